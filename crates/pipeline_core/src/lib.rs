@@ -1,0 +1,1 @@
+//! The application, its schedules, profiler and cancellation.

@@ -1,0 +1,1 @@
+//! Components and resources that cross a stage boundary.

@@ -1,0 +1,1 @@
+//! Light tables, photon and path steps, density estimates.
