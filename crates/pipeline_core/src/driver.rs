@@ -1,0 +1,105 @@
+use crate::{Bounce, Cancellation, Finish, Load, PhotonPass, Prepare, Progress, RenderPass, Report};
+use bevy_app::App;
+use bevy_ecs::resource::Resource;
+use bevy_ecs::schedule::ScheduleLabel;
+use bevy_ecs::world::World;
+use std::time::{Duration, Instant};
+
+/// What drives the schedules after [`Prepare`]. Stages write it, [`render`] reads it.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct RenderClock {
+    /// Number of stages that still want [`PhotonPass`] to run.
+    pub photons_pending: u32,
+    /// Paths of the current wave that live; [`Bounce`] runs while there are any.
+    pub live_paths: u64,
+    /// Bounce that [`Bounce`] runs for, from 0.
+    pub bounce: u32,
+    /// Waves that are rendered.
+    pub waves_done: u64,
+    /// Waves of the whole image, all samples included.
+    pub waves_total: u64,
+    /// Waves that make a whole pass: one more sample, or a few, in every pixel.
+    pub waves_per_pass: u64,
+    /// Stop before the first pass that would start later than this after the start of rendering.
+    pub time_limit: Option<Duration>,
+    /// Load and prepare only.
+    pub check_only: bool,
+}
+
+/// How a render ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Every sample was taken, or the time limit came; the files are written.
+    Finished,
+    /// Somebody asked to stop; what there was is written.
+    Interrupted,
+    /// The scene is bad; [`Report`] says why. Nothing was written.
+    BadScene,
+    /// The image could not be written; [`Report`] says why.
+    WriteFailed,
+}
+
+/// Runs the schedules from [`Load`] to [`Finish`].
+///
+/// Photon batches and waves are where an interruption and the time limit are noticed, so their size bounds how long
+/// that takes. The time limit ends on whole passes, and one pass is always rendered.
+pub fn render(app: &mut App) -> Outcome {
+    let started = Instant::now();
+    let world = app.world_mut();
+    for (stage, run) in [
+        ("loading", run::<Load> as fn(&mut World)),
+        ("preparing", run::<Prepare>),
+    ] {
+        world.resource::<Progress>().start(stage, "", 0);
+        run(world);
+        if world.resource::<Report>().failed() {
+            return Outcome::BadScene;
+        }
+    }
+    if world.resource::<RenderClock>().check_only {
+        return Outcome::Finished;
+    }
+    let cancellation = world.resource::<Cancellation>().clone();
+    while world.resource::<RenderClock>().photons_pending > 0 && !cancellation.is_requested() {
+        world.run_schedule(PhotonPass);
+    }
+    let clock = world.resource::<RenderClock>();
+    let (total, per_pass, limit) = (clock.waves_total, clock.waves_per_pass.max(1), clock.time_limit);
+    let progress = world.resource::<Progress>().clone();
+    progress.start("rendering", "waves", total);
+    while !cancellation.is_requested() {
+        let clock = world.resource::<RenderClock>();
+        let done = clock.waves_done;
+        progress.set_done(done);
+        let out_of_time =
+            done >= per_pass && done % per_pass == 0 && limit.is_some_and(|limit| started.elapsed() >= limit);
+        if done >= total || out_of_time {
+            break;
+        }
+        world.run_schedule(RenderPass);
+        world.resource_mut::<RenderClock>().waves_done += 1;
+    }
+    let interrupted = world.resource::<RenderClock>().waves_done < total && cancellation.is_requested();
+    progress.start("writing", "", 0);
+    world.run_schedule(Finish);
+    match (world.resource::<Report>().failed(), interrupted) {
+        (true, _) => Outcome::WriteFailed,
+        (false, true) => Outcome::Interrupted,
+        (false, false) => Outcome::Finished,
+    }
+}
+
+fn run<S: ScheduleLabel + Default>(world: &mut World) {
+    world.run_schedule(S::default());
+}
+
+/// Runs [`Bounce`] until no path of the wave lives.
+///
+/// Stands in [`RenderSystems::TracePaths`](crate::RenderSystems); exclusive, since it runs a schedule.
+pub(crate) fn trace_paths(world: &mut World) {
+    world.resource_mut::<RenderClock>().bounce = 0;
+    while world.resource::<RenderClock>().live_paths > 0 {
+        world.run_schedule(Bounce);
+        world.resource_mut::<RenderClock>().bounce += 1;
+    }
+}
