@@ -1,0 +1,175 @@
+//! What single scattering loses: the tables behind energy compensation.
+//!
+//! A GGX lobe accounts for light that meets one microfacet. The rest, 1 − E(ω), is what these tables hold: an average
+//! over the normals visible from ω. They are computed at first use by a fixed quadrature in a few hundredths of a
+//! second, so they are the same on every machine.
+
+use crate::fresnel::fresnel_dielectric;
+use crate::ggx::Ggx;
+use crate::loss_table::{LossTable, SideLoss, cell};
+use glam::{Vec2, Vec3};
+use radiometry::math;
+use std::f32::consts::PI;
+use std::sync::LazyLock;
+
+/// Light that a perfectly reflecting GGX surface loses in single scattering.
+#[inline]
+pub(crate) fn reflection_loss(alpha: f32) -> SideLoss<2> {
+    let table = &*REFLECTION;
+    let (i, f) = table.locate_alpha(alpha);
+    SideLoss {
+        table,
+        alpha,
+        rows: [(table.row(0, i), 1.0 - f), (table.row(0, i + 1), f)],
+    }
+}
+
+/// Light that a GGX interface between two dielectrics loses in single scattering, reflected and refracted together.
+///
+/// - `eta`: `n_transmitted / n_incident` as seen from the side in question; clamped to [¼, 4].
+#[inline]
+pub(crate) fn refraction_loss(alpha: f32, eta: f32) -> SideLoss<4> {
+    let table = &*REFRACTION;
+    let (i, f) = table.locate_alpha(alpha);
+    let (slab, g) = locate_eta(eta);
+    SideLoss {
+        table,
+        alpha,
+        rows: [
+            (table.row(slab, i), (1.0 - g) * (1.0 - f)),
+            (table.row(slab, i + 1), (1.0 - g) * f),
+            (table.row(slab + 1, i), g * (1.0 - f)),
+            (table.row(slab + 1, i + 1), g * f),
+        ],
+    }
+}
+
+/// Slabs of the refraction table: equal steps of ±√|s|, s = (η − 1)/(η + 1), which are dense about η = 1.
+const ETA_STEPS: usize = 20;
+/// s for η = 4; its negative is η = ¼.
+const LARGEST_S: f32 = 0.6;
+
+#[inline]
+fn locate_eta(eta: f32) -> (usize, f32) {
+    let s = (eta - 1.0) / (eta + 1.0) / LARGEST_S;
+    cell(0.5 + 0.5 * s.abs().sqrt().copysign(s), ETA_STEPS)
+}
+
+fn eta_of_slab(slab: usize) -> f32 {
+    let root = 2.0 * slab as f32 / ETA_STEPS as f32 - 1.0;
+    let s = LARGEST_S * root * root.abs();
+    (1.0 + s) / (1.0 - s)
+}
+
+static REFLECTION: LazyLock<LossTable> = LazyLock::new(build_reflection);
+static REFRACTION: LazyLock<LossTable> = LazyLock::new(build_refraction);
+
+fn build_reflection() -> LossTable {
+    let quadrature = Quadrature::new(16, 48);
+    LossTable::build(1, 32, 32, |_, alpha, mu| quadrature.reflection(alpha, mu))
+}
+
+fn build_refraction() -> LossTable {
+    let quadrature = Quadrature::new(8, 24);
+    LossTable::build(ETA_STEPS + 1, 18, 16, |slab, alpha, mu| {
+        quadrature.refraction(alpha, mu, eta_of_slab(slab))
+    })
+}
+
+/// Midpoints over the two numbers that choose a visible normal; half the azimuths suffice by symmetry.
+struct Quadrature {
+    azimuths: Vec<Vec2>,
+    heights: Vec<f32>,
+}
+
+impl Quadrature {
+    fn new(azimuths: usize, heights: usize) -> Self {
+        let mid = |i: usize, n: usize| (i as f32 + 0.5) / n as f32;
+        let on_circle = |phi: f32| Vec2::new(math::cos(phi), math::sin(phi));
+        Self {
+            azimuths: (0..azimuths).map(|i| on_circle(PI * mid(i, azimuths))).collect(),
+            heights: (0..heights).map(|i| mid(i, heights)).collect(),
+        }
+    }
+
+    /// Mean of `loss(ω_o, h)` over the normals visible from an angle.
+    fn mean(&self, ggx: Ggx, mu: f32, loss: impl Fn(Vec3, Vec3) -> f32) -> f32 {
+        let wo = Vec3::new(((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt(), 0.0, mu);
+        let mut sum = 0.0_f64;
+        for azimuth in &self.azimuths {
+            for height in &self.heights {
+                sum += f64::from(loss(wo, ggx.visible_normal(wo, *azimuth, *height)));
+            }
+        }
+        (sum / (self.azimuths.len() * self.heights.len()) as f64) as f32
+    }
+
+    /// Mean of 1 − G₂/G₁.
+    fn reflection(&self, alpha: f32, mu: f32) -> f32 {
+        let ggx = Ggx::new(alpha);
+        self.mean(ggx, mu, |wo, h| loss_of_reflection(ggx, wo, h))
+    }
+
+    /// Mean of `F (1 − G₂/G₁) + (1 − F)(1 − G₁(ω_i))`.
+    fn refraction(&self, alpha: f32, mu: f32, eta: f32) -> f32 {
+        let ggx = Ggx::new(alpha);
+        self.mean(ggx, mu, |wo, h| {
+            let c = wo.dot(h).max(0.0);
+            let (f, cos_t) = fresnel_dielectric(c, eta);
+            let below = wo.z / eta - (c / eta - cos_t) * h.z;
+            let refracted = if below > 0.0 { 1.0 - ggx.masking(below) } else { 1.0 };
+            f * loss_of_reflection(ggx, wo, h) + (1.0 - f) * refracted
+        })
+    }
+}
+
+/// `1 − G₂(ω_o, ω_i)/G₁(ω_o)` of the reflection at `h`; all of it where that lies below the surface.
+fn loss_of_reflection(ggx: Ggx, wo: Vec3, h: Vec3) -> f32 {
+    let cos_i = 2.0 * wo.dot(h) * h.z - wo.z;
+    if cos_i <= 0.0 {
+        return 1.0;
+    }
+    let (s_o, s_i) = (ggx.spread(wo.z), ggx.spread(cos_i));
+    1.0 - cos_i * (wo.z + s_o) / (wo.z * s_i + cos_i * s_o)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_surface_as_rough_as_can_be_has_a_closed_form() {
+        // α = 1, normal incidence: h² is uniform, G₂/G₁ = 2c/(1 + c) with c = 2h² − 1, so E = 1 − ln 2.
+        let loss = reflection_loss(1.0).at(1.0);
+        assert!((loss - std::f32::consts::LN_2).abs() < 3e-3, "{loss}");
+    }
+
+    #[test]
+    fn averages_are_those_of_the_interpolated_losses() {
+        /// Blending rows of other α is off by this much where rows are far apart; it scales a loss of at most 0.1 there.
+        const TOLERANCE: f32 = 0.05;
+        let steps = 20_000;
+        let mean = |f: &dyn Fn(f32) -> f32| -> f32 {
+            let term = |i: i32| {
+                let mu = (f64::from(i) + 0.5) / f64::from(steps);
+                2.0 * mu * f64::from(f(mu as f32)) / f64::from(steps)
+            };
+            (0..steps).map(term).sum::<f64>() as f32
+        };
+        for alpha in [0.002, 0.011, 0.07, 0.3, 0.77] {
+            let metal = reflection_loss(alpha);
+            let glass = refraction_loss(alpha, 1.5);
+            let (m, g) = (mean(&|mu| metal.at(mu)), mean(&|mu| glass.at(mu)));
+            assert!(
+                (metal.average() - m).abs() < TOLERANCE * m,
+                "{alpha}: {} {m}",
+                metal.average()
+            );
+            assert!(
+                (glass.average() - g).abs() < TOLERANCE * g,
+                "{alpha}: {} {g}",
+                glass.average()
+            );
+        }
+    }
+}

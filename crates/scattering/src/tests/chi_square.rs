@@ -1,0 +1,121 @@
+use super::*;
+use crate::{DiffuseBsdf, Metal, Transport};
+use std::f32::consts::{PI, TAU};
+
+const THETA_BINS: usize = 24;
+const PHI_BINS: usize = 32;
+/// Points a side over which the density is integrated in a bin.
+const SUB: usize = 24;
+const SAMPLES: usize = 200_000;
+/// Standard normal deviate that the statistic may reach: one in 30,000 correct samplers would exceed it.
+const LARGEST_DEVIATE: f64 = 4.0;
+
+/// Expected share of samples in each bin of the sphere, and in a last one for draws without a direction.
+///
+/// The points are a lattice with no two neighbours on a parallel: the density of rough glass jumps along one, which rows
+/// of points would misjudge.
+fn expected(bsdf: &Bsdf, wo: Vec3) -> Vec<f64> {
+    let mut shares = vec![0.0; THETA_BINS * PHI_BINS + 1];
+    let (rows, columns) = (THETA_BINS * SUB, PHI_BINS * SUB);
+    let shifts: Vec<f32> = (0..columns).map(|c| math::fract(c as f32 * 0.618_034)).collect();
+    for row in 0..rows {
+        for (column, shift) in shifts.iter().enumerate() {
+            let theta = PI * (row as f32 + shift) / rows as f32;
+            let (sin, cos) = math::sin_cos(TAU * (column as f32 + 0.5) / columns as f32);
+            let (sin_theta, cos_theta) = math::sin_cos(theta);
+            let wi = Vec3::new(sin_theta * cos, sin_theta * sin, cos_theta);
+            let density = bsdf.pdf(wo, wi, Transport::Radiance) * sin_theta;
+            shares[row / SUB * PHI_BINS + column / SUB] += f64::from(density);
+        }
+    }
+    let area = f64::from(PI / rows as f32) * f64::from(TAU / columns as f32);
+    shares.iter_mut().for_each(|share| *share *= area);
+    let rest = 1.0 - shares.iter().sum::<f64>();
+    shares[THETA_BINS * PHI_BINS] = rest;
+    shares
+}
+
+fn observed(bsdf: &Bsdf, wo: Vec3, seed: u64) -> Vec<f64> {
+    let mut counts = vec![0.0; THETA_BINS * PHI_BINS + 1];
+    let mut numbers = Numbers(seed << 40);
+    for _ in 0..SAMPLES {
+        let sample = bsdf.sample(wo, numbers.next(), numbers.next_2d(), Transport::Radiance);
+        let bin = sample.map_or(THETA_BINS * PHI_BINS, |s| {
+            let row = (math::acos(s.wi.z) / PI * THETA_BINS as f32) as usize;
+            let phi = math::fract(math::atan2(s.wi.y, s.wi.x) / TAU + 1.0);
+            row.min(THETA_BINS - 1) * PHI_BINS + ((phi * PHI_BINS as f32) as usize).min(PHI_BINS - 1)
+        });
+        counts[bin] += 1.0;
+    }
+    counts
+}
+
+/// Pearson's statistic as a standard normal deviate (Wilson and Hilferty 1931); bins that expect little are pooled.
+fn deviate(expected: &[f64], observed: &[f64]) -> f64 {
+    let (mut statistic, mut degrees) = (0.0, -1.0);
+    let mut pool = (0.0, 0.0);
+    for (share, count) in expected.iter().zip(observed) {
+        let e = share * SAMPLES as f64;
+        if e < 10.0 {
+            pool = (pool.0 + e, pool.1 + count);
+        } else {
+            statistic += (count - e) * (count - e) / e;
+            degrees += 1.0;
+        }
+    }
+    if pool.0.max(pool.1) > 10.0 {
+        statistic += (pool.1 - pool.0) * (pool.1 - pool.0) / pool.0.max(1.0);
+        degrees += 1.0;
+    }
+    if degrees < 1.0 {
+        return 0.0;
+    }
+    let spread = 2.0 / (9.0 * degrees);
+    (math::powf_f64(statistic / degrees, 1.0 / 3.0) - (1.0 - spread)) / spread.sqrt()
+}
+
+fn assert_sampled_as_promised(name: &str, bsdf: &Bsdf, cosines: &[f32]) {
+    for (i, cos_o) in cosines.iter().enumerate() {
+        let wo = direction(*cos_o);
+        let shares = expected(bsdf, wo);
+        let failed = shares.last().copied().unwrap_or(0.0);
+        assert!(
+            failed > -3e-3,
+            "{name} at {cos_o}: the density integrates to {}",
+            1.0 - failed
+        );
+        let z = deviate(&shares, &observed(bsdf, wo, i as u64 + 1));
+        assert!(z < LARGEST_DEVIATE, "{name} at {cos_o}: deviate {z}");
+    }
+}
+
+#[test]
+fn diffuse() {
+    let bsdf = Bsdf::Diffuse(DiffuseBsdf::new(Rgb::splat(0.5)));
+    assert_sampled_as_promised("diffuse", &bsdf, &[1.0, 0.3, -0.6]);
+}
+
+#[test]
+fn metals() {
+    for alpha in [0.06, 0.2, 0.5, 1.0] {
+        for compensated in [false, true] {
+            let name = format!("metal of α {alpha}, compensated {compensated}");
+            assert_sampled_as_promised(&name, &metal(1.0, alpha, compensated), &[1.0, 0.6, 0.1, -0.3]);
+        }
+    }
+    let gold = Metal::from_name("gold").expect("a listed metal");
+    let bsdf = Bsdf::Conductor(ConductorBsdf::new(gold.into(), surface(0.3, true)));
+    assert_sampled_as_promised("gold", &bsdf, &[0.7]);
+}
+
+#[test]
+fn glass_from_both_sides() {
+    for ior in [1.33, 2.4, 0.7] {
+        for alpha in [0.1, 0.4, 1.0] {
+            for compensated in [false, true] {
+                let name = format!("glass of index {ior}, α {alpha}, compensated {compensated}");
+                assert_sampled_as_promised(&name, &glass(ior, alpha, compensated), &[0.9, 0.2, -0.95, -0.4]);
+            }
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! How to load a scene.
+
+use std::path::PathBuf;
+
+/// What a scene may need at most. Each limit is an error with a place when it is passed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Bytes of one file; 64 MiB.
+    pub file_bytes: usize,
+    /// Prims; 1,000,000.
+    pub prims: usize,
+    /// Length of a prim's path in names; 64, and never more.
+    pub prim_depth: usize,
+    /// Fields that are written; 10,000,000.
+    pub opinions: usize,
+    /// Items of one list; 100,000.
+    pub list_items: usize,
+    /// Time samples of one field; 1,000,000.
+    pub samples: usize,
+    /// Variants of one set; 1,000.
+    pub variants: usize,
+    /// Bytes of one name; 128.
+    pub name_bytes: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            file_bytes: 64 << 20,
+            prims: 1_000_000,
+            prim_depth: DEEPEST,
+            opinions: 10_000_000,
+            list_items: 100_000,
+            samples: 1_000_000,
+            variants: 1_000,
+            name_bytes: 128,
+        }
+    }
+}
+
+/// Prims are never nested deeper: that many fit on the stack of any thread.
+pub(crate) const DEEPEST: usize = 64;
+
+/// How to load a scene.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Values for single fields, as `/Prim.Component.field=RON` or `/Prim.field=RON`; they are
+    /// stronger than the scene, and a later one is stronger than an earlier.
+    pub sets: Vec<String>,
+    /// Choices of variants, as `/Prim{set=variant}`.
+    pub variants: Vec<String>,
+    /// The folder that no file may lie outside of; by default the folder of the scene or the
+    /// nearest one above it that has a `pipeline.toml`.
+    pub root: Option<PathBuf>,
+    /// The frame to show; by default the scene's `time.start`, else 0.
+    pub frame: Option<f64>,
+    /// Whether payloads are brought in.
+    pub load_payloads: bool,
+    /// Whether the files that fields name must exist. When off, [`AssetPath`](crate::AssetPath)
+    /// keeps the text of the scene.
+    pub check_assets: bool,
+    /// What a scene may need at most.
+    pub limits: Limits,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            sets: Vec::new(),
+            variants: Vec::new(),
+            root: None,
+            frame: None,
+            load_payloads: true,
+            check_assets: true,
+            limits: Limits::default(),
+        }
+    }
+}
