@@ -1,2 +1,42 @@
-//! The `pipeline` command.
-fn main() {}
+//! The `pipeline` command: arguments in, reports and exit codes out.
+//!
+//! One file a command, each with a function `execute`. What commands share stands in its own file: the options
+//! (`args`, `parse`), the application with its scene (`session`), progress, interruption, profiling, and the one place
+//! that turns outcomes into reports and exit codes (`exit`). Nothing here knows how an image is made.
+//!
+//! Data goes to standard output, text for people to standard error. A reader that goes away early is no error.
+
+mod args;
+mod check;
+mod compare;
+mod compare_text;
+mod exit;
+mod graph;
+mod interrupt;
+mod outputs;
+mod parse;
+mod profile;
+mod profiling;
+mod progress;
+mod run;
+mod schema;
+mod session;
+mod stages;
+mod summary;
+mod terminal;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let ended = match Cli::parse().command {
+        Command::Run(options) => run::execute(&options),
+        Command::Check(options) => check::execute(&options),
+        Command::Schema(options) => schema::execute(&options),
+        Command::Stages(options) => stages::execute(&options),
+        Command::Profile(options) => profile::execute(&options),
+        Command::Compare(options) => compare::execute(&options),
+    };
+    exit::conclude(ended)
+}

@@ -24,6 +24,8 @@ pub struct RenderClock {
     pub time_limit: Option<Duration>,
     /// Load and prepare only.
     pub check_only: bool,
+    /// Refuse a scene that loading or preparing warns about.
+    pub strict: bool,
 }
 
 /// How a render ended.
@@ -33,7 +35,7 @@ pub enum Outcome {
     Finished,
     /// Somebody asked to stop; what there was is written.
     Interrupted,
-    /// The scene is bad; [`Report`] says why. Nothing was written.
+    /// The scene is bad, or has warnings and the clock is strict; [`Report`] says why. Nothing was written.
     BadScene,
     /// The image could not be written; [`Report`] says why.
     WriteFailed,
@@ -55,6 +57,9 @@ pub fn render(app: &mut App) -> Outcome {
         if world.resource::<Report>().failed() {
             return Outcome::BadScene;
         }
+    }
+    if world.resource::<RenderClock>().strict && !world.resource::<Report>().warnings().is_empty() {
+        return Outcome::BadScene;
     }
     if world.resource::<RenderClock>().check_only {
         return Outcome::Finished;

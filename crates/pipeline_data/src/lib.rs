@@ -1,1 +1,27 @@
-//! Components and resources that cross a stage boundary.
+//! Components and resources that cross a stage boundary. No systems.
+//!
+//! One file per flow: what is written in a scene ([`vocabulary`]), what the scene became (`scene`), what is asked of
+//! the render (`request`, `settings`), and the streams of paths, photons and pixels that systems hand to each other. A
+//! stage may keep whatever else it likes to itself; what two stages share stands here, with its byte budget.
+//!
+//! It deliberately holds no formula: those are one layer down, in crates that know no ECS.
+
+mod mesh_store;
+mod photon;
+mod request;
+mod scene;
+mod settings;
+mod stream;
+pub mod vocabulary;
+
+pub use mesh_store::{ImportedMesh, MeshStore};
+pub use photon::{CausticPhoton, Photon};
+pub use request::RenderRequest;
+pub use scene::{
+    Acceleration, CameraFrame, ComposedScene, InstancePrims, PrimIndex, SceneOrigin, TransportScene, WorldTransform,
+};
+pub use settings::RenderSettings;
+pub use stream::{
+    Contribution, ContributionLog, Contributions, FilmBatch, FilmSums, FirstHit, FirstHits, HitStream, PathStream,
+    RayStream,
+};

@@ -1,1 +1,50 @@
-//! The stages of the renderer.
+//! The stages of the renderer, a directory each, and [`DefaultStages`], the list of them.
+//!
+//! A stage is a plugin: its settings are components that a scene file can carry, its systems sit in the sets of
+//! `pipeline_core`, and what it shares with others stands in `pipeline_data`. Stages never import each other; adding one
+//! means a directory here and a line in [`DefaultStages`].
+//!
+//! | stage | does |
+//! |---|---|
+//! | [`load`] | scene file to entities and meshes |
+//! | [`geometry`] | world transforms and acceleration structures |
+//! | [`tables`] | materials, lights, camera and settings, checked |
+//! | [`camera`] | camera rays through the reconstruction filter |
+//! | [`photon_map`] | caustic photons: emitted, stored as entities, gathered |
+//! | [`path_tracing`] | intersection, emission, direct light, scattering |
+//! | [`image`] | film, auxiliary channels, image files and checkpoints |
+//!
+//! ```
+//! use bevy_app::App;
+//! let mut app = App::empty();
+//! app.add_plugins((pipeline_core::CorePlugin, pipeline_stages::DefaultStages));
+//! let schedules = pipeline_core::describe_schedules(&mut app).expect("no ambiguities");
+//! assert!(schedules.iter().any(|s| s.name == "Bounce"));
+//! ```
+
+use bevy_app::{App, Plugin};
+
+pub mod camera;
+pub mod geometry;
+pub mod image;
+pub mod load;
+pub mod path_tracing;
+pub mod photon_map;
+pub mod tables;
+
+/// All stages of the renderer.
+pub struct DefaultStages;
+
+impl Plugin for DefaultStages {
+    fn build(&self, app: &mut App) {
+        app.add_plugins((
+            load::LoadPlugin,
+            geometry::GeometryPlugin,
+            tables::TablesPlugin,
+            camera::CameraPlugin,
+            photon_map::PhotonMapPlugin,
+            path_tracing::PathTracingPlugin,
+            image::ImagePlugin,
+        ));
+    }
+}

@@ -58,6 +58,13 @@ impl SampleStream {
         Self { key, index }
     }
 
+    /// The sample index.
+    #[inline]
+    #[must_use]
+    pub const fn index(&self) -> u32 {
+        self.index
+    }
+
     #[inline]
     const fn dimension_key(&self, bounce: u32, dimension: u32) -> u64 {
         hash_u64(self.key ^ (((bounce as u64) << 32) | dimension as u64).wrapping_mul(GOLDEN))

@@ -1,1 +1,44 @@
-//! Light tables, photon and path steps, density estimates.
+//! Light transport on plain data: light tables and emission, photon and path steps, density estimates.
+//!
+//! This crate is where the physics of the renderer stands. It knows no entities and no schedules: a step takes a path and
+//! the [`Scene`] and says what it contributes and where it goes on. The stages call these functions from their systems;
+//! a fused loop can call the same functions one after the other for one path and gets the same bits.
+//!
+//! - [`PathClass`] and [`Methods`] decide, for every path, which layer it belongs to and which estimator may count it:
+//!   exactly one does.
+//! - [`LightTable`] chooses lights by power and samples each by solid angle or area.
+//! - [`arrive`], [`emitted_light`], [`sample_direct_light`] and [`scatter`] are one bounce of a path from the eye.
+//! - [`EmissionSampler`] and [`trace_photon`] are the life of a photon; [`PhotonMap`] estimates radiance from where
+//!   photons landed.
+//!
+//! It deliberately has no volumes and no caches yet, and it never decides anything by thread or time.
+//!
+//! ```
+//! use transport::{Event, Layer, Methods, PathClass};
+//! let on_wall = PathClass::EYE.after(Event::Diffuse);
+//! let through_glass = on_wall.after(Event::Specular).after(Event::Specular);
+//! assert_eq!(through_glass.layer(), Layer::Caustic);
+//! assert!(Methods::TRACED.counts_traced_light(through_glass));
+//! ```
+
+mod camera;
+mod density;
+mod emission;
+mod light;
+mod path;
+mod path_class;
+mod photon;
+mod projection;
+mod scene;
+mod vertex;
+
+pub use camera::Camera;
+pub use density::{DensityFilter, DensitySettings, PhotonColumns, PhotonMap};
+pub use emission::{EmissionSampler, EmittedPhoton};
+pub use light::{LightSample, LightSource, LightTable};
+pub use path::{Path, arrive, emitted_light, sample_direct_light, scatter};
+pub use path_class::{CausticMethod, DirectMethod, Event, Layer, Methods, PathClass};
+pub use photon::{Deposit, MapKind, MapKinds, PHOTON_STAGE, trace_photon};
+pub use projection::{MAX_TARGETS, TargetSphere, cluster_targets};
+pub use scene::{Material, Scene};
+pub use vertex::Vertex;

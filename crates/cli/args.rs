@@ -1,0 +1,177 @@
+use crate::parse;
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// A global-illumination renderer whose data lives in an ECS.
+#[derive(Parser, Debug)]
+#[command(
+    name = "pipeline",
+    version,
+    arg_required_else_help = true,
+    after_help = "Exit codes: 0 done, 1 render or I/O failed, 2 bad command line or bad scene, 130 interrupted \
+                  (image written)."
+)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Subcommand, Debug)]
+pub(crate) enum Command {
+    /// Render a scene to image files
+    Run(RunArgs),
+    /// Load and check a scene, render nothing
+    Check(CheckArgs),
+    /// List what a scene can say: components, fields, types, units, ranges, defaults
+    Schema(SchemaArgs),
+    /// List schedules, sets and systems in the order they run
+    Stages(StagesArgs),
+    /// Render a scene and print what every system cost
+    Profile(ProfileArgs),
+    /// Measure how far an image is from a reference
+    Compare(CompareArgs),
+}
+
+/// A scene and how to compose it.
+#[derive(Args, Debug)]
+pub(crate) struct SceneArgs {
+    /// The scene file
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: PathBuf,
+    /// Set one field, stronger than the scene; a later one wins
+    #[arg(long, value_name = "/PRIM.COMPONENT.FIELD=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Choose a variant
+    #[arg(long, value_name = "/PRIM{SET=VARIANT}")]
+    pub(crate) variant: Vec<String>,
+    /// The frame to show [default: the scene's first, else 0]
+    #[arg(long, value_name = "T", value_parser = parse::finite, allow_negative_numbers = true)]
+    pub(crate) frame: Option<f64>,
+    /// The folder that no file of the scene may lie outside of [default: the scene's folder, or the nearest one above
+    /// it with a pipeline.toml]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) root: Option<PathBuf>,
+    /// Leave payloads out
+    #[arg(long)]
+    pub(crate) no_payloads: bool,
+}
+
+/// How to render.
+#[derive(Args, Debug)]
+pub(crate) struct RenderArgs {
+    /// A file to write, .exr (linear, with layers) or .png (tone-mapped); may be given several times
+    #[arg(short, long = "output", value_name = "FILE", value_parser = parse::output)]
+    pub(crate) output: Vec<PathBuf>,
+    /// Samples a pixel, in place of the scene's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) samples: Option<u32>,
+    /// Stop after the first pass that ends later than this: 90, 30s, 2m, 1h, 500ms
+    #[arg(long, value_name = "TIME", value_parser = parse::duration)]
+    pub(crate) time_limit: Option<Duration>,
+    /// Pixels of the whole film, in place of the scene's
+    #[arg(long, value_name = "WxH", value_parser = parse::resolution)]
+    pub(crate) resolution: Option<[u32; 2]>,
+    /// Render a part only: first pixel, and the pixel after the last
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse::crop)]
+    pub(crate) crop: Option<[u32; 4]>,
+    /// Threads to use; changes no bit of the image [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=parse::MAX_THREADS))]
+    pub(crate) threads: Option<u16>,
+    /// Seed of all random numbers, in place of the scene's
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Side of a film tile in pixels; changes no bit of the image
+    #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=parse::MAX_TILE))]
+    pub(crate) tile_size: u32,
+    /// Treat warnings and dropped samples as errors
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// Write what every system cost
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) profile: Option<PathBuf>,
+    /// Write a timeline of all systems, for Perfetto
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) trace: Option<PathBuf>,
+    /// Go on from where the same command was interrupted
+    #[arg(long)]
+    pub(crate) resume: bool,
+    /// Show nothing but warnings and errors
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Without -o, writes SCENE.exr and SCENE.png, named after the scene, in the working directory.\n\
+                        Ctrl-C writes the image as it is; the same command with --resume goes on from there."
+)]
+pub(crate) struct RunArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    #[command(flatten)]
+    pub(crate) render: RenderArgs,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "Takes the options of `run`, and writes no image without -o.")]
+pub(crate) struct ProfileArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    #[command(flatten)]
+    pub(crate) render: RenderArgs,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct CheckArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Treat warnings as errors
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct SchemaArgs {
+    /// The component to describe [default: all]
+    #[arg(value_name = "COMPONENT")]
+    pub(crate) component: Option<String>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct StagesArgs {
+    /// A scene to check first
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: Option<PathBuf>,
+    /// Print a Graphviz graph
+    #[arg(long)]
+    pub(crate) dot: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct CompareArgs {
+    /// The image, .exr
+    #[arg(value_name = "IMAGE")]
+    pub(crate) image: PathBuf,
+    /// The reference, .exr, of the same size
+    #[arg(value_name = "REFERENCE")]
+    pub(crate) reference: PathBuf,
+    /// Write IMAGE - REFERENCE: .exr has the signed numbers; .png is red where IMAGE is too bright, blue where too dark
+    #[arg(long, value_name = "FILE", value_parser = parse::output)]
+    pub(crate) diff: Option<PathBuf>,
+    /// Judge by the trimmed error, which leaves out the worst 0.1 % of the pixels
+    #[arg(long)]
+    pub(crate) trim: bool,
+    /// How many of the worst pixels to list
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    pub(crate) worst: usize,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Fail (exit code 1) if the relative mean squared error is over this
+    #[arg(long, value_name = "X", value_parser = parse::not_negative)]
+    pub(crate) max_relmse: Option<f64>,
+    /// Compare a layer, such as `caustic`, instead of the whole image
+    #[arg(long, value_name = "NAME")]
+    pub(crate) layer: Option<String>,
+}

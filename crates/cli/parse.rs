@@ -1,0 +1,142 @@
+//! Values of options: from text to numbers, with messages that say what is expected.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// More threads than any machine this was written for has; above it, it is a slip of the finger.
+pub(crate) const MAX_THREADS: i64 = 1024;
+/// Above it, a tile holds more than a wave of paths.
+pub(crate) const MAX_TILE: i64 = 1024;
+/// Longest time limit: a year.
+const MAX_SECONDS: f64 = 366.0 * 24.0 * 3600.0;
+
+/// A file to write an image to.
+pub(crate) fn output(text: &str) -> Result<PathBuf, String> {
+    match Format::of(Path::new(text)) {
+        Some(_) => Ok(text.into()),
+        None => Err("the name must end in .exr or .png".into()),
+    }
+}
+
+/// A kind of image file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    Exr,
+    Png,
+}
+
+impl Format {
+    /// The kind that the extension of a path asks for.
+    pub(crate) fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()? {
+            "exr" => Some(Self::Exr),
+            "png" => Some(Self::Png),
+            _ => None,
+        }
+    }
+}
+
+/// A length of time: `90`, `30s`, `2m`, `1.5h`, `500ms`.
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
+    let unit_at = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(unit_at);
+    let unit = match unit {
+        "ms" => 0.001,
+        "" | "s" => 1.0,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(format!("`{unit}` is no unit of time; use ms, s, m or h")),
+    };
+    let number: f64 = number
+        .trim()
+        .parse()
+        .map_err(|_| "give a number with a unit, such as 30s, 2m, 1h or 500ms".to_owned())?;
+    let seconds = number * unit;
+    if seconds > 0.0 && seconds <= MAX_SECONDS {
+        Ok(Duration::from_secs_f64(seconds))
+    } else {
+        Err("give a time above 0 and up to a year".into())
+    }
+}
+
+/// Width and height in pixels: `640x480`.
+pub(crate) fn resolution(text: &str) -> Result<[u32; 2], String> {
+    let (width, height) = text
+        .split_once(['x', 'X'])
+        .ok_or("give width and height in pixels, such as 640x480")?;
+    let side = |text: &str| match text.trim().parse() {
+        Ok(side) if (1..=film::MAX_SIDE).contains(&side) => Ok(side),
+        _ => Err(format!("each side must be a whole number from 1 to {}", film::MAX_SIDE)),
+    };
+    Ok([side(width)?, side(height)?])
+}
+
+/// A part of the film in pixels: `X0,Y0,X1,Y1`, the latter two exclusive.
+pub(crate) fn crop(text: &str) -> Result<[u32; 4], String> {
+    let numbers: Vec<u32> = text
+        .split(',')
+        .map(|part| part.trim().parse().ok())
+        .collect::<Option<_>>()
+        .ok_or("give four whole numbers, such as 0,0,64,64")?;
+    match <[u32; 4]>::try_from(numbers) {
+        Ok([x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok([x0, y0, x1, y1]),
+        Ok(_) => {
+            Err("the crop is empty; X1 and Y1 are the pixel after the last, so they must be above X0 and Y0".into())
+        }
+        Err(_) => Err("give four whole numbers, such as 0,0,64,64".into()),
+    }
+}
+
+/// A number that is neither infinite nor NaN.
+pub(crate) fn finite(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err("give a number".into()),
+    }
+}
+
+/// A number from 0.
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    match finite(text) {
+        Ok(number) if number >= 0.0 => Ok(number),
+        _ => Err("give a number from 0".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_have_units() {
+        let ms = |text| duration(text).unwrap().as_millis();
+        assert_eq!(ms("30s"), 30_000);
+        assert_eq!(ms("2m"), 120_000);
+        assert_eq!(ms("1.5h"), 5_400_000);
+        assert_eq!(ms("500ms"), 500);
+        assert_eq!(ms("90"), 90_000);
+        for bad in ["", "s", "-3s", "0", "3 days", "NaN", "inf", "1e300h", "30 s s"] {
+            assert!(duration(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn sizes_are_checked() {
+        assert_eq!(resolution("640x480"), Ok([640, 480]));
+        for bad in ["640", "0x1", "1x0", "70000x1", "-1x1", "x", "1x1x1", "1.5x1"] {
+            assert!(resolution(bad).is_err(), "{bad}");
+        }
+        assert_eq!(crop("0, 1,2,3"), Ok([0, 1, 2, 3]));
+        for bad in ["", "0,0,1", "0,0,0,1", "5,0,1,1", "0,0,1,1,1", "-1,0,1,1", "a,b,c,d"] {
+            assert!(crop(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn outputs_have_a_known_extension() {
+        assert!(output("a.exr").is_ok() && output("b/c.d.png").is_ok());
+        for bad in ["a.jpg", "a", "", ".exr", "exr", "a.exr.gz"] {
+            assert!(output(bad).is_err(), "{bad}");
+        }
+    }
+}

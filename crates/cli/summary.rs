@@ -1,0 +1,115 @@
+//! What people are told at the end of a render.
+
+use crate::terminal::say;
+use bevy_app::App;
+use pipeline_core::{Counters, RenderClock};
+use pipeline_data::RenderSettings;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Counters of samples that the film's guard left out.
+const REJECTED: &str = "rejected";
+
+/// Samples that were negative or not finite.
+pub(crate) fn rejected_samples(counters: &Counters) -> u64 {
+    let rejected = counters.iter().filter(|(name, _)| name.contains(REJECTED));
+    rejected.map(|(_, count)| count).sum()
+}
+
+/// Tells counters that should be 0 and are not.
+pub(crate) fn tell_trouble(app: &App) {
+    for (name, count) in app.world().resource::<Counters>().iter() {
+        if count > 0 && name.contains(REJECTED) {
+            say(&format!("warning: {count} × {name}"));
+        }
+    }
+}
+
+/// Tells samples, time and files.
+pub(crate) fn tell_result(app: &App, elapsed: Duration, written: &[PathBuf]) {
+    let time = duration_text(elapsed);
+    match samples_done(app) {
+        Some(samples) => say(&format!("{samples} samples a pixel in {time}")),
+        None => say(&format!("done in {time}")),
+    }
+    for path in written {
+        say(&format!("wrote {}", path.display()));
+    }
+}
+
+/// Samples a pixel, earlier runs of a resumed render included; a fraction in the middle of a pass.
+fn samples_done(app: &App) -> Option<String> {
+    let wanted = app.world().get_resource::<RenderSettings>()?.samples;
+    let clock = app.world().resource::<RenderClock>();
+    let share = clock.waves_done as f64 / clock.waves_total.max(1) as f64;
+    let samples = f64::from(wanted) * share;
+    Some(if samples.fract() == 0.0 {
+        format!("{samples}")
+    } else {
+        format!("{samples:.2} of {wanted}")
+    })
+}
+
+/// Tells the command line that goes on from here.
+pub(crate) fn tell_how_to_resume() {
+    say(&format!("to go on: {}", resuming(std::env::args_os())));
+}
+
+/// The same command line with `--resume`.
+fn resuming(arguments: impl Iterator<Item = OsString>) -> String {
+    let mut words: Vec<String> = arguments.map(|word| quoted(&word.to_string_lossy())).collect();
+    if !words.iter().any(|word| word == "--resume") {
+        words.push("--resume".into());
+    }
+    words.join(" ")
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+/// A time for people.
+pub(crate) fn duration_text(time: Duration) -> String {
+    let seconds = time.as_secs_f64();
+    let whole = seconds.round() as u64;
+    if seconds < 9.95 {
+        format!("{seconds:.1} s")
+    } else if whole < 60 {
+        format!("{whole} s")
+    } else if whole < 3600 {
+        format!("{} min {:02} s", whole / 60, whole % 60)
+    } else {
+        format!("{} h {:02} min", whole / 3600, whole / 60 % 60)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_short() {
+        let text = |seconds| duration_text(Duration::from_secs_f64(seconds));
+        assert_eq!(text(0.04), "0.0 s");
+        assert_eq!(text(9.94), "9.9 s");
+        assert_eq!(text(9.96), "10 s");
+        assert_eq!(text(59.6), "1 min 00 s");
+        assert_eq!(text(75.0), "1 min 15 s");
+        assert_eq!(text(7300.0), "2 h 01 min");
+    }
+
+    #[test]
+    fn the_command_to_resume_can_be_pasted() {
+        let words = ["pipeline", "run", "my scene.ron", "--set", "/A.B.c=\"it's\""];
+        let line = resuming(words.iter().map(Into::into));
+        assert_eq!(line, r#"pipeline run 'my scene.ron' --set '/A.B.c="it'\''s"' --resume"#);
+        assert_eq!(resuming(["p", "--resume"].iter().map(Into::into)), "p --resume");
+    }
+}

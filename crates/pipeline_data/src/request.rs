@@ -1,0 +1,48 @@
+use bevy_ecs::resource::Resource;
+use glam::UVec2;
+use std::path::PathBuf;
+
+/// What the caller asks of this render, beside what the scene says. Written by the command line, read by stages.
+#[derive(Resource, Clone, Debug)]
+pub struct RenderRequest {
+    /// The scene file.
+    pub scene: PathBuf,
+    /// How to compose it: `--set`, `--variant`, frame, limits.
+    pub options: scene_format::Options,
+    /// Samples a pixel, in place of the scene's.
+    pub samples: Option<u32>,
+    /// Seed, in place of the scene's.
+    pub seed: Option<u64>,
+    /// Resolution in pixels, in place of the scene's.
+    pub resolution: Option<UVec2>,
+    /// Part of the film to render: x0, y0, x1, y1 in pixels, the latter two exclusive.
+    pub crop: Option<[u32; 4]>,
+    /// Side of a film tile in pixels. Changes no bit of the picture.
+    pub tile_size: u32,
+    /// Files to write, each `.exr` or `.png`.
+    pub outputs: Vec<PathBuf>,
+    /// Go on from the checkpoint that an interrupted render left beside its first output.
+    pub resume: bool,
+    /// Treat warnings as errors.
+    pub strict: bool,
+    /// Use colour in messages.
+    pub colour: bool,
+}
+
+impl Default for RenderRequest {
+    fn default() -> Self {
+        Self {
+            scene: PathBuf::new(),
+            options: scene_format::Options::default(),
+            samples: None,
+            seed: None,
+            resolution: None,
+            crop: None,
+            tile_size: 32,
+            outputs: Vec::new(),
+            resume: false,
+            strict: false,
+            colour: false,
+        }
+    }
+}

@@ -1,0 +1,29 @@
+use bevy_ecs::resource::Resource;
+use glam::UVec2;
+
+/// The settings of this render, checked: what scene and command line together say. Written by `tables`.
+#[derive(Resource, Clone, Debug)]
+pub struct RenderSettings {
+    /// Estimator of each term.
+    pub methods: transport::Methods,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Pixels of the whole film.
+    pub resolution: UVec2,
+    /// First pixel of the crop.
+    pub crop_min: UVec2,
+    /// One beyond the last pixel of the crop.
+    pub crop_max: UVec2,
+    /// Reconstruction filter.
+    pub filter: film::FilterKind,
+    /// Its radius in pixels.
+    pub filter_radius: f32,
+    /// Exposure of the 8-bit output, in stops.
+    pub exposure: f32,
+    /// Tone curve of the 8-bit output.
+    pub tone_map: film::ToneMap,
+    /// Row of the prim that carries `Render`, in the composed scene.
+    pub render_prim: u32,
+}

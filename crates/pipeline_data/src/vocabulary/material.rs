@@ -1,0 +1,109 @@
+use bevy_ecs::component::Component;
+use bevy_ecs::reflect::ReflectComponent;
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+use glam::Vec3;
+use scene_format::{Exclusive, Range, Unit};
+
+/// A matt surface: it scatters light equally in all directions (Lambert). Two-sided.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(Component, Default)]
+pub struct Diffuse {
+    /// Share of light that it reflects. Above about 0.9 light bounces for long, and the render takes longer.
+    #[reflect(@Range::closed(0.0, 1.0))]
+    pub albedo: Vec3,
+}
+
+impl Default for Diffuse {
+    fn default() -> Self {
+        Self {
+            albedo: Vec3::splat(0.5),
+        }
+    }
+}
+
+/// A metal or a mirror. Two-sided.
+///
+/// Its colour is one of four: a named `metal`, a complex index of refraction `eta` with `k`, a colour `f0`, or a
+/// constant `reflectance`.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(Component, Default)]
+pub struct Conductor {
+    /// A measured metal: "aluminium", "beryllium", "chrome", "copper", "gold", "iridium", "mercury", "silver",
+    /// "tungsten" or "vanadium".
+    #[reflect(@Exclusive::group("spectrum"))]
+    pub metal: Option<String>,
+    /// Real part of the index of refraction; needs `k`.
+    #[reflect(@Range::at_least(0.0), @Exclusive::side("spectrum", "eta_k"))]
+    pub eta: Option<Vec3>,
+    /// Imaginary part of the index of refraction; needs `eta`.
+    #[reflect(@Range::at_least(0.0), @Exclusive::side("spectrum", "eta_k"))]
+    pub k: Option<Vec3>,
+    /// Reflectance seen head-on; it rises towards grazing angles (Schlick).
+    #[reflect(@Range::closed(0.0, 1.0), @Exclusive::group("spectrum"))]
+    pub f0: Option<Vec3>,
+    /// The same reflectance at every angle; non-physical, but exact in a mirror box. Counts when nothing else is written.
+    #[reflect(@Range::closed(0.0, 1.0), @Exclusive::group("spectrum"))]
+    pub reflectance: Vec3,
+    /// 0 is a mirror, 1 nearly matt; the GGX width is its square.
+    #[reflect(@Range::closed(0.0, 1.0))]
+    pub roughness: f32,
+    /// Adds the light that bounces more than once between the microfacets. Off, rough metal is too dark; non-physical.
+    pub energy_compensation: bool,
+}
+
+impl Default for Conductor {
+    fn default() -> Self {
+        Self {
+            metal: None,
+            eta: None,
+            k: None,
+            f0: None,
+            reflectance: Vec3::ONE,
+            roughness: 0.0,
+            energy_compensation: true,
+        }
+    }
+}
+
+/// Glass, water, an air bubble: clear, with an inside.
+///
+/// The side of the normal is its outside, so the geometry must be closed; a sheet without thickness takes `thin`.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(Component, Default)]
+pub struct Dielectric {
+    /// Index of refraction of the inside relative to the outside: water 1.33, glass 1.5, diamond 2.42, a bubble in water
+    /// 0.75.
+    #[reflect(@Range::closed(0.25, 4.0))]
+    pub ior: f32,
+    /// 0 is polished, 1 frosted; the GGX width is its square.
+    #[reflect(@Range::closed(0.0, 1.0))]
+    pub roughness: f32,
+    /// Adds the light that bounces more than once between the microfacets. Off, rough glass is too dark; non-physical.
+    pub energy_compensation: bool,
+    /// Factor for light each time it goes through the surface; non-physical where `absorption` would do.
+    #[reflect(@Range::closed(0.0, 1.0))]
+    pub tint: Vec3,
+    /// Light lost on the way through the inside: exp(−absorption · distance). Colours thick parts more than thin ones.
+    #[reflect(@Range::at_least(0.0), @Unit("m⁻¹"))]
+    pub absorption: Vec3,
+    /// Abbe number: low spreads colours more. Not supported yet.
+    #[reflect(@Range::above(0.0))]
+    pub dispersion: Option<f32>,
+    /// A pane: both of its surfaces in one, too close together to bend light. Smooth only.
+    pub thin: bool,
+}
+
+impl Default for Dielectric {
+    fn default() -> Self {
+        Self {
+            ior: 1.5,
+            roughness: 0.0,
+            energy_compensation: true,
+            tint: Vec3::ONE,
+            absorption: Vec3::ZERO,
+            dispersion: None,
+            thin: false,
+        }
+    }
+}

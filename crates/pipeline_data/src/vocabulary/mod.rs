@@ -1,0 +1,65 @@
+//! What a scene file can say: the components of the core vocabulary, by theme.
+//!
+//! Their names, fields, units and defaults are public. Scenes outside of this repository use them, so a change here is
+//! a change of the file format; adding is free. The doc comments are what `pipeline schema` prints. Every component is
+//! written by `load`, one for each prim that carries it, and read by the stages of `Prepare`; none is read in an inner
+//! loop.
+//!
+//! Conventions: right-handed, Y up, metres; degrees in files. Colours are linear RGB with Rec.709 primaries. Light is
+//! radiometric. Whatever places a prim is in `f64`, so that a scene ten kilometres away keeps its precision.
+//!
+//! Deliberately absent is everything that no stage renders yet: textures, volumes, motion, lenses. A field that exists
+//! and cannot be served yet (`Dielectric.dispersion`, `EnvironmentLight.file`) is refused with its place.
+
+mod camera;
+mod film;
+mod findings;
+mod geometry;
+mod light;
+mod material;
+mod render;
+mod structure;
+#[cfg(test)]
+mod tests;
+
+pub use camera::Camera;
+pub use film::{Film, FilterKind, ToneMap};
+pub use findings::{Findings, component_place, field_place};
+pub use geometry::{
+    Band, Cuboid, Cylinder, Disc, GeometryComponents, GeometryComponentsItem, GeometrySource, Mesh, Quad, Sphere, Torus,
+};
+pub use light::{Emission, EnvironmentLight, PointLight};
+pub use material::{Conductor, Dielectric, Diffuse};
+pub use render::{CausticMethod, DirectMethod, IndirectMethod, LightTransport, Render, SpecularMethod};
+pub use structure::{LookAt, MaterialBinding, Transform};
+
+use bevy_app::{App, Plugin};
+
+/// Registers every component of the core vocabulary, so that scenes can name it.
+pub struct VocabularyPlugin;
+
+impl Plugin for VocabularyPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<Transform>()
+            .register_type::<LookAt>()
+            .register_type::<MaterialBinding>()
+            .register_type::<Sphere>()
+            .register_type::<Quad>()
+            .register_type::<Disc>()
+            .register_type::<Cuboid>()
+            .register_type::<Cylinder>()
+            .register_type::<Torus>()
+            .register_type::<Band>()
+            .register_type::<Mesh>()
+            .register_type::<Diffuse>()
+            .register_type::<Conductor>()
+            .register_type::<Dielectric>()
+            .register_type::<Emission>()
+            .register_type::<PointLight>()
+            .register_type::<EnvironmentLight>()
+            .register_type::<Camera>()
+            .register_type::<Film>()
+            .register_type::<Render>()
+            .register_type::<LightTransport>();
+    }
+}

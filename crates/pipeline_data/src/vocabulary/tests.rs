@@ -1,0 +1,165 @@
+use super::VocabularyPlugin;
+use bevy_app::App;
+use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
+use scene_format::{ComponentInfo, Options, Schema, load_str, schema_text};
+
+/// What of the vocabulary exists, as the documentation of the scene format lists it: `-` is required, `?` optional.
+const TABLE: &str = "
+Band            | inner_radius 0.9 | outer_radius 1 | height 0.5 | bevel 0
+Camera          | fov 40
+Conductor       | metal ? | eta ? | k ? | f0 ? | reflectance (1, 1, 1) | roughness 0 | energy_compensation true
+Cuboid          | size (1, 1, 1)
+Cylinder        | radius 1 | height 1 | capped true
+Dielectric      | ior 1.5 | roughness 0 | energy_compensation true | tint (1, 1, 1) | absorption (0, 0, 0) | dispersion ? | thin false
+Diffuse         | albedo (0.5, 0.5, 0.5)
+Disc            | radius 1
+Emission        | radiance (1, 1, 1) | power ? | two_sided false
+EnvironmentLight | file ? | radiance (1, 1, 1) | scale 1
+Film            | resolution (512, 512) | filter BlackmanHarris | filter_radius 1.5 | exposure 0 | tone_map Filmic
+LightTransport  | direct SampleLights | specular Trace | caustic PhotonMap | indirect PathTrace | specular_alpha 0.05
+LookAt          | target - | up (0, 1, 0)
+MaterialBinding | target -
+Mesh            | file - | smooth true
+PointLight      | power (1, 1, 1) | intensity ?
+Quad            | size (1, 1)
+Render          | camera - | samples 64 | max_depth ? | seed 0 | passes ?
+Sphere          | radius 1
+Torus           | major_radius 1 | minor_radius 0.25
+Transform       | translate (0, 0, 0) | rotate (0, 0, 0) | scale (1, 1, 1) | quaternion ? | matrix ?
+";
+
+fn with_schema<T>(use_it: impl FnOnce(&Schema<'_>) -> T) -> T {
+    let mut app = App::empty();
+    app.init_resource::<AppTypeRegistry>();
+    app.add_plugins(VocabularyPlugin);
+    let registry = app.world().resource::<AppTypeRegistry>().read();
+    let schema = Schema::new(&registry, |found| found.contains::<ReflectComponent>()).expect("a sound vocabulary");
+    use_it(&schema)
+}
+
+/// Says of each field what the table says, from what `pipeline schema` prints.
+fn describe(schema: &Schema<'_>, component: &ComponentInfo) -> String {
+    let printed = schema_text(schema, Some(component.name)).expect("a registered component");
+    let mut described = component.name.to_owned();
+    for field in &component.fields {
+        let start = format!("  {}: ", field.name);
+        let facts = printed
+            .lines()
+            .find_map(|line| line.strip_prefix(&start))
+            .expect("a line for each field");
+        let facts = facts.split(", excludes").next().unwrap_or(facts);
+        let value = match facts.split_once("default ") {
+            Some((_, default)) => default,
+            None if field.required => "-",
+            None => "?",
+        };
+        described.push_str(&format!(" | {} {value}", field.name));
+    }
+    described
+}
+
+#[test]
+fn components_are_those_of_the_table() {
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let expected: Vec<String> = TABLE.trim().lines().map(words).collect();
+    let registered: Vec<String> =
+        with_schema(|schema| schema.components().iter().map(|c| describe(schema, c)).collect());
+    assert_eq!(registered, expected);
+}
+
+#[test]
+fn everything_is_documented_and_every_number_has_a_range_or_needs_none() {
+    // Any finite number makes sense here.
+    const FREE: [&str; 9] = [
+        "Transform.translate",
+        "Transform.rotate",
+        "Transform.scale",
+        "Transform.quaternion",
+        "Transform.matrix",
+        "LookAt.target",
+        "LookAt.up",
+        "Render.seed",
+        "Conductor.metal",
+    ];
+    with_schema(|schema| {
+        for component in schema.components() {
+            assert!(component.docs.is_some(), "{}", component.name);
+            let printed = schema_text(schema, Some(component.name)).expect("a registered component");
+            for field in &component.fields {
+                let name = format!("{}.{}", component.name, field.name);
+                assert!(field.docs.is_some(), "{name}");
+                let line = printed
+                    .lines()
+                    .find(|line| line.starts_with(&format!("  {}: ", field.name)));
+                let is_number = line.is_some_and(|line| line.contains("number"));
+                assert!(
+                    !is_number || field.range.is_some() || FREE.contains(&name.as_str()),
+                    "{name}"
+                );
+            }
+        }
+    });
+}
+
+fn refusal(component: &str) -> String {
+    let text = format!(r#"Layer(prims: {{"/Scene": Def({component})}})"#);
+    with_schema(
+        |schema| match load_str("scene.ron", &text, schema, &Options::default()) {
+            Ok(_) => "no error".to_owned(),
+            Err(errors) => errors.to_string(),
+        },
+    )
+}
+
+#[test]
+fn a_method_that_does_not_exist_names_those_that_do() {
+    let indirect = refusal("LightTransport: (indirect: IrradianceCache)");
+    assert!(
+        indirect.contains("`LightTransport.indirect` must be one of PathTrace, Off"),
+        "{indirect}"
+    );
+    assert!(indirect.contains("scene.ron:1:"), "{indirect}");
+    let direct = refusal("LightTransport: (direct: PhotonMap)");
+    assert!(direct.contains("must be one of SampleLights, Off"), "{direct}");
+}
+
+#[test]
+fn numbers_out_of_range_are_refused() {
+    for bad in [
+        "Sphere: (radius: 0)",
+        "Quad: (size: (1, -1))",
+        "Diffuse: (albedo: (0.5, 0.5, 1.5))",
+        "Dielectric: (ior: 0)",
+        "Dielectric: (absorption: (-1, 0, 0))",
+        "Emission: (radiance: (-1, 0, 0))",
+        "Camera: (fov: 180)",
+        "PointLight: (intensity: (0, 0, -1))",
+        "EnvironmentLight: (scale: -1)",
+        "Film: (resolution: (0, 8))",
+        "Film: (resolution: (8, 100000))",
+        "Render: (camera: \"/Scene\", samples: 0)",
+        "Render: (camera: \"/Scene\", samples: 4000000000)",
+        "LightTransport: (specular_alpha: 2)",
+    ] {
+        assert!(refusal(bad).contains("error[out-of-range]"), "{bad}: {}", refusal(bad));
+    }
+}
+
+#[test]
+fn either_or_fields_exclude_each_other() {
+    for bad in [
+        "Conductor: (metal: \"gold\", f0: (1, 1, 1))",
+        "Conductor: (eta: (1, 1, 1), k: (1, 1, 1), metal: \"gold\")",
+        "Emission: (radiance: (1, 1, 1), power: (1, 1, 1))",
+        "PointLight: (power: (1, 1, 1), intensity: (1, 1, 1))",
+        "Transform: (rotate: (0, 90, 0), quaternion: (0, 0, 0, 1))",
+    ] {
+        assert!(
+            refusal(bad).contains("error[exclusive-fields]"),
+            "{bad}: {}",
+            refusal(bad)
+        );
+    }
+    assert!(refusal("Conductor: (eta: (1, 1, 1))").contains("`eta` needs `k` too"));
+    assert_eq!(refusal("Conductor: (eta: (1, 1, 1), k: (1, 1, 1))"), "no error");
+}

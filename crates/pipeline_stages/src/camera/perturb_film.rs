@@ -1,0 +1,37 @@
+use super::CAMERA_STAGE;
+use bevy_ecs::prelude::*;
+use film::FilterSampler;
+use pipeline_core::record_items;
+use pipeline_data::{CameraFrame, FilmBatch, FilmSums, PathStream, RayStream, RenderSettings};
+use radiometry::SampleStream;
+use rayon::prelude::*;
+
+/// Moves each ray to a place of its pixel's filter, chosen in proportion to the filter.
+pub(super) fn sample_filter(
+    mut batches: Query<(&mut FilmBatch, &mut RayStream, &PathStream)>,
+    film: Res<FilmSums>,
+    settings: Res<RenderSettings>,
+    camera: Res<CameraFrame>,
+    mut filter: Local<Option<FilterSampler>>,
+) {
+    let filter = match &mut *filter {
+        Some(filter) if filter.kind() == settings.filter && filter.radius() == settings.filter_radius => filter,
+        stale => stale.insert(FilterSampler::new(settings.filter, settings.filter_radius)),
+    };
+    let mut batches: Vec<_> = batches.iter_mut().collect();
+    let paths = batches
+        .par_iter_mut()
+        .map(|(batch, rays, paths)| {
+            let first = batch.first_pixel;
+            for (slot, (ray, path)) in rays.0.iter_mut().zip(&paths.0).enumerate() {
+                let pixel = film.0.pixel_of(first + batch.pixel_of_slot[slot] as usize);
+                let domain = u64::from(pixel.y) * u64::from(settings.resolution.x) + u64::from(pixel.x);
+                let stream = SampleStream::new(settings.seed, CAMERA_STAGE, domain, path.stream.index());
+                batch.film_position[slot] += filter.sample(stream.draw_2d(0, 0));
+                *ray = camera.0.ray(batch.film_position[slot]);
+            }
+            paths.0.len()
+        })
+        .sum();
+    record_items(paths);
+}

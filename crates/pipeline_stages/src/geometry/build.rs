@@ -1,0 +1,174 @@
+use bevy_ecs::prelude::*;
+use glam::{DAffine3, DVec3};
+use pipeline_core::{Counters, Report, record_items};
+use pipeline_data::vocabulary::{Findings, GeometryComponents, GeometrySource, Mesh, component_place};
+use pipeline_data::{
+    Acceleration, ComposedScene, InstancePrims, MeshStore, PrimIndex, RenderRequest, SceneOrigin, WorldTransform,
+};
+use scene_format::{Diagnostic, Scene};
+use spatial::{Geometry, Instance, RayScene, SpatialError, TriangleMesh};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Geometries and instances as `spatial` wants them, with what the instances came from.
+struct Parts<'a> {
+    store: &'a MeshStore,
+    geometries: Vec<Geometry>,
+    instances: Vec<Instance>,
+    prims: Vec<u32>,
+    /// Name of the component of each instance.
+    components: Vec<&'static str>,
+    /// Row of the geometry of a mesh, by row in the store and whether it is shaded by its normals.
+    row_of_mesh: BTreeMap<(usize, bool), u32>,
+}
+
+/// Collects all geometry, moved to the scene's origin, and builds the ray scene.
+pub(super) fn build_acceleration(
+    composed: Res<ComposedScene>,
+    request: Res<RenderRequest>,
+    store: Res<MeshStore>,
+    origin: Res<SceneOrigin>,
+    mut report: ResMut<Report>,
+    mut counters: ResMut<Counters>,
+    mut acceleration: ResMut<Acceleration>,
+    mut instance_prims: ResMut<InstancePrims>,
+    prims: Query<(&PrimIndex, &WorldTransform, GeometryComponents)>,
+) {
+    let scene = &composed.0;
+    let mut findings = Findings::default();
+    let mut parts = Parts {
+        store: &store,
+        geometries: Vec::new(),
+        instances: Vec::new(),
+        prims: Vec::new(),
+        components: Vec::new(),
+        row_of_mesh: BTreeMap::new(),
+    };
+    let mut rows: Vec<_> = prims.iter().collect();
+    rows.sort_by_key(|(index, ..)| **index);
+    for (index, world, geometry) in rows {
+        let mut sources = geometry.sources();
+        let Some((name, source)) = sources.next() else { continue };
+        if let Some((second, _)) = sources.next() {
+            let finding = two_geometries(scene, index.0, name, second);
+            findings.push_at(component_place(scene, index.0, second), finding);
+        } else {
+            parts.add(index.0, name, source, &world.0, origin.0);
+        }
+    }
+    acceleration.0 = None;
+    record_items(parts.instances.len());
+    counters.counter("geometry/instances").add(parts.instances.len() as u64);
+    if !findings.has_error() && !report.failed() {
+        match RayScene::build(parts.geometries.clone(), parts.instances.clone()) {
+            Ok(rays) => acceleration.0 = Some(rays),
+            Err(error) => parts.find_errors(&error, scene, &mut findings),
+        }
+    }
+    findings.file(scene, &request, &mut report);
+    instance_prims.0 = parts.prims;
+}
+
+impl Parts<'_> {
+    fn add(
+        &mut self,
+        prim: u32,
+        component: &'static str,
+        source: GeometrySource<'_>,
+        world: &DAffine3,
+        scene_origin: DVec3,
+    ) {
+        let (geometry, own_origin) = match source {
+            GeometrySource::Shape(shape) => (self.add_geometry(Geometry::Shape(shape)), DVec3::ZERO),
+            // A file that could not be read was reported when it was.
+            GeometrySource::Mesh(mesh) => match self.add_mesh(mesh) {
+                Some(added) => added,
+                None => return,
+            },
+        };
+        // First to the place in the world, then to the scene's origin, so that large numbers cancel in `f64`.
+        let translation = world.transform_point3(own_origin) - scene_origin;
+        self.instances.push(Instance {
+            geometry,
+            world_from_object: DAffine3 {
+                matrix3: world.matrix3,
+                translation,
+            },
+        });
+        self.prims.push(prim);
+        self.components.push(component);
+    }
+
+    fn add_geometry(&mut self, geometry: Geometry) -> u32 {
+        self.geometries.push(geometry);
+        self.geometries.len() as u32 - 1
+    }
+
+    /// Row of the geometry of a mesh, and where its middle lies in the coordinates of the file.
+    fn add_mesh(&mut self, mesh: &Mesh) -> Option<(u32, DVec3)> {
+        let row = self.store.row_of(Path::new(&mesh.file.0))?;
+        let imported = &self.store.meshes()[row];
+        let smooth = mesh.smooth || imported.mesh.normals.is_none();
+        let geometry = match self.row_of_mesh.get(&(row, smooth)) {
+            Some(geometry) => *geometry,
+            None => {
+                let triangles = if smooth { Arc::clone(&imported.mesh) } else { without_normals(&imported.mesh) };
+                let geometry = self.add_geometry(Geometry::Mesh(triangles));
+                self.row_of_mesh.insert((row, smooth), geometry);
+                geometry
+            }
+        };
+        Some((geometry, imported.origin))
+    }
+
+    /// Says what is wrong with which prim, after the whole could not be built because of `first`.
+    fn find_errors(&self, first: &SpatialError, scene: &Scene, findings: &mut Findings) {
+        for (row, instance) in self.instances.iter().enumerate() {
+            let alone = vec![Instance { geometry: 0, ..*instance }];
+            let geometry = self.geometries[instance.geometry as usize].clone();
+            if let Err(error) = RayScene::build(vec![geometry], alone) {
+                let (component, finding) = describe(&error, scene, self.prims[row], self.components[row]);
+                findings.push_at(component_place(scene, self.prims[row], component), finding);
+            }
+        }
+        if !findings.has_error() {
+            findings.push(Diagnostic::error("bad-geometry", first.to_string()));
+        }
+    }
+}
+
+fn without_normals(mesh: &TriangleMesh) -> Arc<TriangleMesh> {
+    Arc::new(TriangleMesh {
+        normals: None,
+        ..mesh.clone()
+    })
+}
+
+/// Puts an error about one prim in words, and names the component that has to change.
+fn describe<'c>(error: &SpatialError, scene: &Scene, prim: u32, component: &'c str) -> (&'c str, Diagnostic) {
+    let path = &scene.prims[prim as usize].path;
+    let (code, component, what) = match error {
+        SpatialError::SingularTransform { .. } | SpatialError::NonFiniteTransform { .. } => {
+            ("singular-transform", "Transform", error.to_string())
+        }
+        SpatialError::Overflow { .. } => ("too-far", component, error.to_string()),
+        SpatialError::InvalidShape { reason, .. } => ("bad-shape", component, (*reason).to_owned()),
+        _ => ("bad-geometry", component, error.to_string()),
+    };
+    // The row in the message is that of a scene of one, which says nothing to anybody.
+    let what = what.trim_start_matches("instance 0: ").trim_start_matches("geometry 0: ");
+    (component, Diagnostic::error(code, format!("`{path}` cannot be traced: {what}")))
+}
+
+fn two_geometries(scene: &Scene, prim: u32, first: &str, second: &str) -> Diagnostic {
+    let path = &scene.prims[prim as usize].path;
+    let message = format!("`{path}` has two geometries, `{first}` and `{second}`");
+    let finding = Diagnostic::error("two-geometries", message)
+        .note("a prim has one; put the other on a child")
+        .note(format!("`without: [\"{first}\"]` removes one that a weaker opinion brings"));
+    match component_place(scene, prim, first) {
+        Some(place) => finding.also(place, format!("`{first}` is written")),
+        None => finding,
+    }
+}

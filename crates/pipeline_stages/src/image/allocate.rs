@@ -1,0 +1,82 @@
+use super::LAYERS;
+use bevy_ecs::prelude::*;
+use film::{AuxGroup, ChannelLayout, Film, FilmWindow};
+use pipeline_core::Report;
+use pipeline_data::{ComposedScene, FilmSums, RenderRequest, RenderSettings};
+use std::fs::File;
+use std::io::{BufReader, ErrorKind};
+use std::path::PathBuf;
+use transport::Layer;
+
+/// Where an interrupted render keeps what it has: beside its first output.
+pub(super) fn checkpoint_path(request: &RenderRequest) -> Option<PathBuf> {
+    let first = request.outputs.first()?;
+    let mut name = first.file_name()?.to_owned();
+    name.push(".partial");
+    Some(first.with_file_name(name))
+}
+
+/// What a checkpoint has to agree with: the composed scene, seed, resolution and crop. The number of samples may differ.
+pub(super) fn checkpoint_key(scene: &ComposedScene, settings: &RenderSettings) -> [u8; 32] {
+    let mut key = scene.0.hash;
+    scene_format::mix_hash(&mut key, "seed", &settings.seed.to_le_bytes());
+    for (label, value) in
+        [("resolution", settings.resolution), ("crop min", settings.crop_min), ("crop max", settings.crop_max)]
+    {
+        scene_format::mix_hash(&mut key, label, &value.x.to_le_bytes());
+        scene_format::mix_hash(&mut key, label, &value.y.to_le_bytes());
+    }
+    key
+}
+
+/// Channels of the film.
+pub(super) fn layout() -> ChannelLayout {
+    ChannelLayout {
+        layers: Layer::ALL[..LAYERS].iter().map(|layer| layer.name().into()).collect(),
+        aux: vec![AuxGroup::rgb("albedo"), AuxGroup::xyz("normal"), AuxGroup::depth("depth")],
+        variance: false,
+    }
+}
+
+/// Makes an empty film, or takes up the one that an interrupted render left.
+pub(super) fn allocate_film(
+    mut commands: Commands,
+    request: Res<RenderRequest>,
+    settings: Option<Res<RenderSettings>>,
+    scene: Option<Res<ComposedScene>>,
+    mut report: ResMut<Report>,
+) {
+    let (Some(settings), Some(scene), false) = (settings, scene, report.failed()) else { return };
+    let window =
+        FilmWindow { resolution: settings.resolution, crop_min: settings.crop_min, crop_max: settings.crop_max };
+    let mut resumed = None;
+    if let (true, Some(path)) = (request.resume, checkpoint_path(&request)) {
+        match File::open(&path) {
+            Ok(file) => {
+                let key = checkpoint_key(&scene, &settings);
+                match Film::load(&mut BufReader::new(file), &key, window, layout(), request.tile_size) {
+                    Ok(film) => resumed = Some(film),
+                    Err(error) => {
+                        report.fail(format!(
+                            "error[bad-checkpoint]: cannot resume from {}: {error}\n  = remove it, or render without --resume",
+                            path.display()
+                        ));
+                        return;
+                    }
+                }
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => report.warn(format!(
+                "warning[no-checkpoint]: there is no {} to resume from; starting anew",
+                path.display()
+            )),
+            Err(error) => {
+                report.fail(format!("error[bad-checkpoint]: cannot read {}: {error}", path.display()));
+                return;
+            }
+        }
+    }
+    match resumed.map_or_else(|| Film::new(window, layout(), request.tile_size), Ok) {
+        Ok(film) => commands.insert_resource(FilmSums(film)),
+        Err(error) => report.fail(format!("error[film]: {error}")),
+    }
+}

@@ -1,0 +1,57 @@
+use super::allocate::{checkpoint_key, checkpoint_path};
+use super::resolve::ResolvedImage;
+use bevy_ecs::prelude::*;
+use film::Metadata;
+use pipeline_core::{RenderClock, Report};
+use pipeline_data::{ComposedScene, FilmSums, RenderRequest, RenderSettings};
+use std::fmt::Write as _;
+
+/// Writes the files that the request names; a checkpoint beside them when samples are missing.
+pub(super) fn write_images(
+    request: Res<RenderRequest>,
+    settings: Res<RenderSettings>,
+    scene: Res<ComposedScene>,
+    film: Res<FilmSums>,
+    image: Res<ResolvedImage>,
+    clock: Res<RenderClock>,
+    mut report: ResMut<Report>,
+) {
+    let hash = scene.0.hash.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    });
+    // Samples of the pixel that has the fewest: what the whole image has for sure.
+    let samples = (0..film.0.pixel_count()).map(|i| film.0.sample_count(i)).min().unwrap_or(0);
+    let metadata = Metadata {
+        scene_hash: hash,
+        seed: settings.seed,
+        samples: u64::from(samples),
+        version: env!("CARGO_PKG_VERSION").into(),
+        extra: Vec::new(),
+    };
+    for path in &request.outputs {
+        let is_png = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+        let written = if is_png {
+            image.0.rgb("").map_or(Ok(()), |beauty| {
+                film::write_png(path, &beauty, settings.exposure, settings.tone_map).map_err(|e| e.to_string())
+            })
+        } else {
+            film::write_exr(path, &image.0, &metadata).map_err(|e| e.to_string())
+        };
+        if let Err(error) = written {
+            report.fail(format!("error[write]: {error}"));
+        }
+    }
+    let Some(checkpoint) = checkpoint_path(&request) else { return };
+    if clock.waves_done < clock.waves_total {
+        let key = checkpoint_key(&scene, &settings);
+        if let Err(error) = film::atomic_write(&checkpoint, |out| film.0.save(out, &key)) {
+            report.fail(format!("error[write]: {error}"));
+        }
+    } else if request.resume && checkpoint.exists() {
+        // The render is whole: what it was resumed from is of no use any more.
+        if let Err(error) = std::fs::remove_file(&checkpoint) {
+            report.warn(format!("warning[checkpoint]: cannot remove {}: {error}", checkpoint.display()));
+        }
+    }
+}

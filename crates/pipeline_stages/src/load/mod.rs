@@ -1,0 +1,52 @@
+//! Load: a scene file becomes entities.
+//!
+//! Scene: every scene; nothing switches it off.
+//! Sets: [`LoadSystems`] in order. `compose_scene` reads the [`RenderRequest`](pipeline_data::RenderRequest) and
+//! composes the file into [`ComposedScene`]; `spawn_prims` turns every rendered prim into an entity with
+//! [`PrimIndex`](pipeline_data::PrimIndex) and the components that the scene writes, as they are at the scene's frame;
+//! `import_meshes` brings the files that `Mesh` names into the [`MeshStore`](pipeline_data::MeshStore), each once, and
+//! mixes their bytes into the scene's hash.
+//!
+//! What a scene may say is what plug-ins registered: see [`is_scene_component`]. What is wrong goes to the
+//! [`Report`](pipeline_core::Report) with place and remedy; the following systems then find no scene and do nothing.
+//!
+//! Counters: `load/prims`, `load/triangles`.
+//!
+//! Limits: one frame; components with samples over time are taken at that frame. Meshes are Wavefront files.
+
+mod compose;
+mod import;
+mod spawn;
+#[cfg(test)]
+mod tests;
+
+pub use compose::is_scene_component;
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use pipeline_core::{Load, LoadSystems};
+use pipeline_data::ComposedScene;
+use pipeline_data::vocabulary::VocabularyPlugin;
+
+/// Reads the scene file of the render request. Brings the core vocabulary with it.
+pub struct LoadPlugin;
+
+impl Plugin for LoadPlugin {
+    fn build(&self, app: &mut App) {
+        if !app.is_plugin_added::<VocabularyPlugin>() {
+            app.add_plugins(VocabularyPlugin);
+        }
+        app.add_systems(
+            Load,
+            (
+                compose::compose_scene.in_set(LoadSystems::Compose),
+                spawn::spawn_prims
+                    .in_set(LoadSystems::Spawn)
+                    .run_if(resource_exists::<ComposedScene>),
+                import::import_meshes
+                    .in_set(LoadSystems::ImportAssets)
+                    .run_if(resource_exists::<ComposedScene>),
+            ),
+        );
+    }
+}

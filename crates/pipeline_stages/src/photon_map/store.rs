@@ -1,0 +1,54 @@
+use super::PhotonRun;
+use bevy_ecs::prelude::*;
+use pipeline_core::{Counter, Counters, record_items};
+use pipeline_data::{CausticPhoton, Photon};
+
+/// The query that [`store_in_pool`] overwrites.
+pub type PoolSystemParam<'w, 's> = Query<'w, 's, &'static mut Photon, With<CausticPhoton>>;
+
+/// The counter of this system, asked for once.
+pub(super) struct StoredCounter(Counter);
+
+impl FromWorld for StoredCounter {
+    fn from_world(world: &mut World) -> Self {
+        Self(world.resource_mut::<Counters>().counter("photon_map/photons stored"))
+    }
+}
+
+/// Makes the photons that landed entities, their flux divided by the number emitted.
+pub(super) fn store_photons(
+    mut commands: Commands,
+    mut run: ResMut<PhotonRun>,
+    mut pool: PoolSystemParam<'_, '_>,
+    entities: Query<Entity, (With<Photon>, With<CausticPhoton>)>,
+    stored: Local<StoredCounter>,
+) {
+    let mut photons = std::mem::take(&mut run.landed);
+    let scale = 1.0 / run.emitted as f32;
+    for photon in &mut photons {
+        photon.flux *= scale;
+    }
+    stored.0.add(photons.len() as u64);
+    record_items(photons.len());
+    let overwritten = store_in_pool(&photons, &mut pool);
+    if overwritten < photons.len() {
+        let new: Vec<_> = photons[overwritten..].iter().map(|photon| (*photon, CausticPhoton)).collect();
+        commands.spawn_batch(new);
+    }
+    for entity in entities.iter().skip(photons.len()) {
+        commands.entity(entity).despawn();
+    }
+}
+
+/// Overwrites the photon entities that there are, column by column; returns how many photons found a place.
+pub fn store_in_pool(photons: &[Photon], pool: &mut PoolSystemParam<'_, '_>) -> usize {
+    let mut done = 0;
+    if let Ok(columns) = pool.contiguous_iter_mut() {
+        for mut column in columns {
+            let n = column.len().min(photons.len() - done);
+            column[..n].copy_from_slice(&photons[done..done + n]);
+            done += n;
+        }
+    }
+    done
+}

@@ -1,0 +1,235 @@
+use crate::path_class::{Event, Layer, Methods, PathClass};
+use crate::scene::Scene;
+use crate::vertex::Vertex;
+use radiometry::{Rgb, SampleStream, math, warp};
+use scattering::Transport;
+use spatial::{Ray, SurfacePoint, spawn_origin};
+
+/// A path from the eye, between two bounces. 52 bytes.
+#[derive(Clone, Copy, Debug)]
+pub struct Path {
+    /// What light met now is weighted with, by the sampling so far.
+    pub throughput: Rgb,
+    /// Density per solid angle of the last direction; infinite after a delta lobe and for camera rays.
+    pub pdf: f32,
+    /// Product of the η² factors that refraction put into `throughput`.
+    pub eta_scale: f32,
+    /// Its random numbers.
+    pub stream: SampleStream,
+    /// Row of the material that it travels in, or [`Path::VACUUM`].
+    pub medium: u32,
+    /// Where its contributions go, in its batch.
+    pub slot: u32,
+    /// Events so far.
+    pub depth: u32,
+    /// Its class so far.
+    pub class: PathClass,
+}
+
+const _: () = assert!(size_of::<Path>() <= 56);
+
+impl Path {
+    /// [`Path::medium`] of a path that is in no material.
+    pub const VACUUM: u32 = u32::MAX;
+
+    /// A camera path that contributes to `slot`.
+    #[must_use]
+    pub fn from_eye(slot: u32, stream: SampleStream) -> Self {
+        Self {
+            throughput: Rgb::WHITE,
+            pdf: f32::INFINITY,
+            eta_scale: 1.0,
+            stream,
+            medium: Self::VACUUM,
+            slot,
+            depth: 0,
+            class: PathClass::EYE,
+        }
+    }
+}
+
+/// Dimensions of the random numbers of one bounce.
+mod dimension {
+    pub(super) const LIGHT_CHOICE: u32 = 0;
+    pub(super) const LIGHT: u32 = 1;
+    pub(super) const LOBE: u32 = 2;
+    pub(super) const DIRECTION: u32 = 3;
+    pub(super) const ROULETTE: u32 = 4;
+}
+
+/// Events before Russian roulette begins.
+const ROULETTE_DEPTH: u32 = 4;
+/// Most that a path may survive with, so that roulette ends every path.
+const ROULETTE_MAX: f32 = 0.95;
+
+/// Follows a ray to what it meets, and lets the material that it travels in absorb on the way.
+#[inline]
+#[must_use]
+pub fn arrive(scene: &Scene, path: &mut Path, ray: &Ray) -> Option<SurfacePoint> {
+    let hit = scene.rays.intersect(ray);
+    if path.medium != Path::VACUUM {
+        let absorption = scene.material_by_row(path.medium).absorption;
+        path.throughput *= transmittance(absorption, hit.as_ref().map_or(f32::INFINITY, |hit| hit.t));
+    }
+    hit.map(|hit| scene.rays.surface(ray, &hit))
+}
+
+/// exp(−σ t) per channel: the law of Beer and Lambert. A coefficient of zero lets everything through at any distance.
+pub(crate) fn transmittance(absorption: Rgb, distance: f32) -> Rgb {
+    absorption.map(|sigma| if sigma > 0.0 { math::exp(-sigma * distance) } else { 1.0 })
+}
+
+/// The light that a path meets at the end of its ray: on the surface `hit`, or the environment when there is none.
+///
+/// Weighted by multiple importance sampling (power heuristic) against [`sample_direct_light`] at the vertex before.
+/// Returns the layer and the contribution; `None` when there is none or another estimator counts it.
+#[inline]
+#[must_use]
+pub fn emitted_light(
+    scene: &Scene,
+    methods: &Methods,
+    path: &Path,
+    ray: &Ray,
+    hit: Option<&SurfacePoint>,
+) -> Option<(Layer, Rgb)> {
+    let (radiance, weight) = match hit {
+        Some(point) => {
+            let radiance = scene.lights.emitted(point, -ray.direction);
+            if radiance.is_black() || !methods.counts_traced_light(path.class) {
+                return None;
+            }
+            let weight = if path.pdf.is_infinite() {
+                1.0
+            } else {
+                warp::power_heuristic(path.pdf, scene.lights.pdf_emitted(ray.origin, point))
+            };
+            (radiance, weight)
+        }
+        None => {
+            let (radiance, pdf) = scene.lights.environment()?;
+            if !methods.counts_traced_light(path.class) {
+                return None;
+            }
+            (radiance, warp::power_heuristic(path.pdf, pdf))
+        }
+    };
+    Some((path.class.layer(), path.throughput * radiance * weight))
+}
+
+/// Light that arrives at `hit` straight from a sampled light, scattered towards the eye.
+///
+/// Next-event estimation over all non-delta lobes, S and D alike, each credited to the layer of its class and only where
+/// `methods` lets traced light count. Weighted by multiple importance sampling (power heuristic) against hits.
+///
+/// - `contribute`: called for each layer that receives something.
+#[inline]
+pub fn sample_direct_light(
+    scene: &Scene,
+    methods: &Methods,
+    path: &Path,
+    ray: &Ray,
+    hit: &SurfacePoint,
+    mut contribute: impl FnMut(Layer, Rgb),
+) {
+    if path.depth >= methods.max_depth {
+        return;
+    }
+    let vertex = Vertex::new(scene, hit, -ray.direction);
+    if !vertex.bsdf.needs_light_sampling() {
+        return;
+    }
+    let specular = path.class.after(Event::Specular);
+    let diffuse = path.class.after(Event::Diffuse);
+    let counts_specular = methods.counts_traced_light(specular);
+    let counts_diffuse = methods.counts_traced_light(diffuse);
+    if !(counts_specular || counts_diffuse) {
+        return;
+    }
+    let u_choice = path.stream.draw_1d(path.depth, dimension::LIGHT_CHOICE);
+    let u = path.stream.draw_2d(path.depth, dimension::LIGHT);
+    let Some(light) = scene.lights.sample(hit.p, u_choice, u) else {
+        return;
+    };
+    let (mut values, pdf) = vertex.eval_and_pdf(light.wi);
+    if !counts_specular {
+        values.specular = Rgb::BLACK;
+    }
+    if !counts_diffuse {
+        values.diffuse = Rgb::BLACK;
+    }
+    if (values.specular.is_black() && values.diffuse.is_black()) || scene.rays.occluded(&light.shadow_ray(hit)) {
+        return;
+    }
+    let weight = if light.delta {
+        1.0
+    } else {
+        warp::power_heuristic(light.pdf, pdf)
+    };
+    let mut arriving = path.throughput * light.radiance * (weight / light.pdf);
+    // The way to the light is through the material of the path when it stays on the inside.
+    if path.medium != Path::VACUUM && (light.wi.dot(hit.ng) > 0.0) == (vertex.wo.dot(hit.ng) > 0.0) {
+        arriving *= transmittance(
+            scene.material_by_row(path.medium).absorption,
+            light.shadow_ray(hit).t_max,
+        );
+    }
+    if !values.specular.is_black() {
+        contribute(specular.layer(), arriving * values.specular);
+    }
+    if !values.diffuse.is_black() {
+        contribute(diffuse.layer(), arriving * values.diffuse);
+    }
+}
+
+/// Sends a path on from `hit`: chooses a lobe and a direction, plays Russian roulette.
+///
+/// Returns the ray to follow, or `None` when the path ends: absorbed, at its depth, or of a class that cannot contribute
+/// any more.
+#[inline]
+#[must_use]
+pub fn scatter(scene: &Scene, methods: &Methods, path: &mut Path, ray: &Ray, hit: &SurfacePoint) -> Option<Ray> {
+    if path.depth >= methods.max_depth {
+        return None;
+    }
+    let vertex = Vertex::new(scene, hit, -ray.direction);
+    let u_lobe = path.stream.draw_1d(path.depth, dimension::LOBE);
+    let u = path.stream.draw_2d(path.depth, dimension::DIRECTION);
+    let sample = vertex.sample(u_lobe, u, Transport::Radiance)?;
+    path.class = path.class.after(sample.class.into());
+    path.throughput *= sample.weight;
+    path.eta_scale *= sample.eta_sq_scale;
+    if path.throughput.is_black() || !methods.may_contribute(path.class) {
+        return None;
+    }
+    path.pdf = sample.pdf;
+    path.depth += 1;
+    if path.depth > ROULETTE_DEPTH {
+        let survival = (path.throughput.max_element() / path.eta_scale).min(ROULETTE_MAX);
+        if path.stream.draw_1d(path.depth, dimension::ROULETTE) >= survival {
+            return None;
+        }
+        path.throughput *= 1.0 / survival;
+    }
+    if sample.transmitted {
+        path.medium = medium_behind(scene, hit, sample.wi, path.medium);
+    }
+    Some(Ray {
+        time: ray.time,
+        ..Ray::new(spawn_origin(hit.p, hit.error, hit.ng, sample.wi), sample.wi)
+    })
+}
+
+/// The medium after passing through a surface in direction `wi`: its material on the way in, nothing on the way out.
+pub(crate) fn medium_behind(scene: &Scene, hit: &SurfacePoint, wi: glam::Vec3, before: u32) -> u32 {
+    let row = scene.material_row(hit);
+    match scene.material_by_row(row).bsdf {
+        scattering::Bsdf::Dielectric(glass) if !glass.is_thin() => {
+            if wi.dot(hit.ng) < 0.0 {
+                row
+            } else {
+                Path::VACUUM
+            }
+        }
+        _ => before,
+    }
+}

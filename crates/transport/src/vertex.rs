@@ -1,0 +1,123 @@
+use crate::scene::Scene;
+use glam::Vec3;
+use radiometry::{Frame, Rgb};
+use scattering::{Bsdf, BsdfSample, LobeValues, Transport};
+use spatial::SurfacePoint;
+
+/// A surface point with its scattering function, seen from one direction.
+///
+/// Rules for shading normals that differ from the geometric one, all in this file:
+/// - directions that the two normals see on different sides carry nothing;
+/// - where the view itself is such a direction, the geometric normal shades, so that silhouettes do not turn black;
+/// - diffuse reflection is softened towards the terminator by the factor of Chiang, Li and Burley, "Taming the Shadow
+///   Terminator", SIGGRAPH Talks 2019;
+/// - photons get the factor of Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, eq. 5.19.
+pub struct Vertex<'a> {
+    /// Where it is.
+    pub point: &'a SurfacePoint,
+    /// Unit direction back along the ray that arrived.
+    pub wo: Vec3,
+    /// The scattering function.
+    pub bsdf: Bsdf,
+    frame: Frame,
+    wo_local: Vec3,
+    /// Cosine between the two normals; 1 on flat surfaces.
+    cos_normals: f32,
+}
+
+impl<'a> Vertex<'a> {
+    /// - `wo`: unit direction back along the ray that arrived.
+    #[inline]
+    #[must_use]
+    pub fn new(scene: &Scene, point: &'a SurfacePoint, wo: Vec3) -> Self {
+        let same_side = (point.ns.dot(wo) > 0.0) == (point.ng.dot(wo) > 0.0);
+        let normal = if same_side { point.ns } else { point.ng };
+        let frame = Frame::from_normal(normal);
+        Self {
+            point,
+            wo,
+            bsdf: scene.material(point).bsdf,
+            wo_local: frame.local_from_world(wo),
+            cos_normals: normal.dot(point.ng),
+            frame,
+        }
+    }
+
+    /// f(ω_o, ω_i)·|cosθ_i| by class, and the density with which [`Vertex::sample`] returns `wi`.
+    #[inline]
+    #[must_use]
+    pub fn eval_and_pdf(&self, wi: Vec3) -> (LobeValues, f32) {
+        let wi_local = self.frame.local_from_world(wi);
+        if (wi_local.z > 0.0) != (self.point.ng.dot(wi) > 0.0) {
+            return (LobeValues::default(), 0.0);
+        }
+        let (mut values, pdf) = self.bsdf.eval_and_pdf(self.wo_local, wi_local, Transport::Radiance);
+        values.diffuse *= self.terminator(wi, wi_local.z);
+        (values, pdf)
+    }
+
+    /// f(ω_o, ω_i)·|cosθ_i| of the diffuse lobes over the geometric |cosθ_i|: what weighs the flux of a photon that
+    /// came from `wi`.
+    #[inline]
+    #[must_use]
+    pub fn eval_diffuse_flux(&self, wi: Vec3) -> Rgb {
+        let wi_local = self.frame.local_from_world(wi);
+        let cos_geometric = self.point.ng.dot(wi);
+        if (wi_local.z > 0.0) != (cos_geometric > 0.0) {
+            return Rgb::BLACK;
+        }
+        // On a flat surface the cosines cancel. On a curved one their quotient is bounded, or one grazing photon would
+        // outshine all the others.
+        let cos = cos_geometric.abs().max(0.25 * wi_local.z.abs());
+        if cos <= 0.0 {
+            return Rgb::BLACK;
+        }
+        self.bsdf.eval(self.wo_local, wi_local, Transport::Radiance).diffuse * (1.0 / cos)
+    }
+
+    /// Chooses a direction to go on in, by importance of the scattering function.
+    ///
+    /// Returns the sample with its direction in world space; `None` ends the path.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, u_lobe: f32, u: glam::Vec2, transport: Transport) -> Option<BsdfSample> {
+        let mut sample = self.bsdf.sample(self.wo_local, u_lobe, u, transport)?;
+        let cos_shading = sample.wi.z;
+        sample.wi = self.frame.world_from_local(sample.wi).normalize();
+        let cos_geometric = self.point.ng.dot(sample.wi);
+        if (cos_shading > 0.0) != (cos_geometric > 0.0) {
+            return None;
+        }
+        match transport {
+            Transport::Radiance => {
+                if sample.class == scattering::LobeClass::Diffuse {
+                    sample.weight *= self.terminator(sample.wi, cos_shading);
+                }
+            }
+            Transport::Flux => {
+                let wo_geometric = self.point.ng.dot(self.wo);
+                let denominator = (wo_geometric * cos_shading).abs();
+                if denominator <= 0.0 {
+                    return None;
+                }
+                if self.cos_normals < FLAT {
+                    sample.weight *= (self.wo_local.z * cos_geometric).abs() / denominator;
+                }
+            }
+        }
+        Some(sample)
+    }
+
+    /// 1 on flat surfaces; falls smoothly to 0 where the surface would shadow itself.
+    #[inline]
+    fn terminator(&self, wi: Vec3, cos_shading: f32) -> f32 {
+        if self.cos_normals >= FLAT {
+            return 1.0;
+        }
+        let g = self.point.ng.dot(wi).abs() / (cos_shading.abs() * self.cos_normals.max(1e-3));
+        if g >= 1.0 { 1.0 } else { g * (1.0 + g - g * g) }
+    }
+}
+
+/// Normals closer than this cosine (0.08°) count as one.
+const FLAT: f32 = 0.999_999;
