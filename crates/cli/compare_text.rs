@@ -91,6 +91,6 @@ mod tests {
         assert!(text.contains("relMSE                    0\n"), "{text}");
         let value: serde_json::Value = serde_json::from_str(&json(&comparison)).unwrap();
         assert_eq!(value["relmse"], 0.0);
-        assert_eq!(value["worst"].as_array().map(Vec::len), Some(3));
+        assert_eq!(value["worst"].as_array().map(Vec::len), Some(2));
     }
 }

@@ -28,7 +28,7 @@ pub(crate) enum Format {
 impl Format {
     /// The kind that the extension of a path asks for.
     pub(crate) fn of(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()? {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "exr" => Some(Self::Exr),
             "png" => Some(Self::Png),
             _ => None,
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn outputs_have_a_known_extension() {
-        assert!(output("a.exr").is_ok() && output("b/c.d.png").is_ok());
+        assert!(output("a.exr").is_ok() && output("b/c.d.PNG").is_ok());
         for bad in ["a.jpg", "a", "", ".exr", "exr", "a.exr.gz"] {
             assert!(output(bad).is_err(), "{bad}");
         }

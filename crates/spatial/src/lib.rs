@@ -15,6 +15,7 @@
 //!   A mesh placed once lies in it triangle by triangle, a mesh placed a thousand times is stored once.
 //! - **Uniform by world area.** A [`SurfaceSampler`] chooses points of an instance with densities that hold for world
 //!   space whatever the transform, and by solid angle where there is a closed form.
+//! - **Photons.** A [`PhotonTree`] finds the nearest ones to a point.
 //!
 //! Everything is deterministic: the same input yields the same bits for any number of threads, which only share
 //! finished structures.

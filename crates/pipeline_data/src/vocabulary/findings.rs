@@ -1,4 +1,6 @@
-use crate::RenderRequest;
+use crate::{ComposedScene, RenderRequest};
+use bevy_ecs::change_detection::{Res, ResMut};
+use bevy_ecs::system::SystemParam;
 use pipeline_core::Report;
 use scene_format::{Diagnostic, Diagnostics, Place, Scene, Severity, Sources};
 
@@ -39,6 +41,39 @@ impl Findings {
     /// Writes what loading found wrong to the report.
     pub fn file_refusal(refusal: &Diagnostics, request: &RenderRequest, report: &mut Report) {
         file(&refusal.list, refusal.omitted, &refusal.sources, request.colour, report);
+    }
+}
+
+/// What a system that checks the scene needs: the scene, the request, and where to say what is wrong.
+#[derive(SystemParam)]
+pub struct SceneReport<'w> {
+    composed: Res<'w, ComposedScene>,
+    request: Res<'w, RenderRequest>,
+    report: ResMut<'w, Report>,
+}
+
+impl SceneReport<'_> {
+    /// The composed scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.composed.0
+    }
+
+    /// What was asked for.
+    #[must_use]
+    pub fn request(&self) -> &RenderRequest {
+        &self.request
+    }
+
+    /// True when there was an error, of this system or an earlier one.
+    #[must_use]
+    pub fn failed(&self) -> bool {
+        self.report.failed()
+    }
+
+    /// Writes what was found to the report.
+    pub fn file(&mut self, findings: Findings) {
+        findings.file(&self.composed.0, &self.request, &mut self.report);
     }
 }
 

@@ -24,7 +24,7 @@ mod tests;
 
 pub use camera::Camera;
 pub use film::{Film, FilterKind, ToneMap};
-pub use findings::{Findings, component_place, field_place};
+pub use findings::{Findings, SceneReport, component_place, field_place};
 pub use geometry::{
     Band, Cuboid, Cylinder, Disc, GeometryComponents, GeometryComponentsItem, GeometrySource, Mesh, Quad, Sphere, Torus,
 };

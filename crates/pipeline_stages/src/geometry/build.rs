@@ -1,9 +1,9 @@
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3};
-use pipeline_core::{Counters, Report, record_items};
-use pipeline_data::vocabulary::{Findings, GeometryComponents, GeometrySource, Mesh, component_place};
+use pipeline_core::{Counters, record_items};
+use pipeline_data::vocabulary::{Findings, GeometryComponents, GeometrySource, Mesh, SceneReport, component_place};
 use pipeline_data::{
-    Acceleration, ComposedScene, InstancePrims, MeshStore, PrimIndex, RenderRequest, SceneOrigin, WorldTransform,
+    Acceleration, InstancePrims, MeshStore, PrimIndex, SceneOrigin, WorldTransform,
 };
 use scene_format::{Diagnostic, Scene};
 use spatial::{Geometry, Instance, RayScene, SpatialError, TriangleMesh};
@@ -25,17 +25,15 @@ struct Parts<'a> {
 
 /// Collects all geometry, moved to the scene's origin, and builds the ray scene.
 pub(super) fn build_acceleration(
-    composed: Res<ComposedScene>,
-    request: Res<RenderRequest>,
+    mut check: SceneReport,
     store: Res<MeshStore>,
     origin: Res<SceneOrigin>,
-    mut report: ResMut<Report>,
     mut counters: ResMut<Counters>,
     mut acceleration: ResMut<Acceleration>,
     mut instance_prims: ResMut<InstancePrims>,
     prims: Query<(&PrimIndex, &WorldTransform, GeometryComponents)>,
 ) {
-    let scene = &composed.0;
+    let scene = check.scene();
     let mut findings = Findings::default();
     let mut parts = Parts {
         store: &store,
@@ -60,14 +58,14 @@ pub(super) fn build_acceleration(
     acceleration.0 = None;
     record_items(parts.instances.len());
     counters.counter("geometry/instances").add(parts.instances.len() as u64);
-    if !findings.has_error() && !report.failed() {
+    if !findings.has_error() && !check.failed() {
         match RayScene::build(parts.geometries.clone(), parts.instances.clone()) {
             Ok(rays) => acceleration.0 = Some(rays),
             Err(error) => parts.find_errors(&error, scene, &mut findings),
         }
     }
-    findings.file(scene, &request, &mut report);
     instance_prims.0 = parts.prims;
+    check.file(findings);
 }
 
 impl Parts<'_> {

@@ -1,11 +1,11 @@
 use super::placement::{PlacementError, WorldBox, half_extent, place};
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3};
-use pipeline_core::{Report, record_items};
+use pipeline_core::record_items;
 use pipeline_data::vocabulary::{
-    Findings, GeometryComponents, GeometryComponentsItem, GeometrySource, LookAt, Transform, field_place,
+    Findings, GeometryComponents, GeometryComponentsItem, GeometrySource, LookAt, SceneReport, Transform, field_place,
 };
-use pipeline_data::{ComposedScene, MeshStore, PrimIndex, RenderRequest, SceneOrigin, WorldTransform};
+use pipeline_data::{MeshStore, PrimIndex, SceneOrigin, WorldTransform};
 use scene_format::{Diagnostic, FieldState, Place, Scene};
 use std::path::Path;
 
@@ -22,13 +22,11 @@ type Placeable<'a> = (
 /// What is below a prim that cannot be placed is left without a transform and without a message of its own.
 pub(super) fn resolve_transforms(
     mut commands: Commands,
-    composed: Res<ComposedScene>,
-    request: Res<RenderRequest>,
+    mut check: SceneReport,
     store: Res<MeshStore>,
-    mut report: ResMut<Report>,
     prims: Query<Placeable<'_>>,
 ) {
-    let scene = &composed.0;
+    let scene = check.scene();
     let mut findings = Findings::default();
     let mut rows: Vec<_> = prims.iter().collect();
     rows.sort_by_key(|(_, index, ..)| **index);
@@ -58,7 +56,7 @@ pub(super) fn resolve_transforms(
             }
         }
     }
-    findings.file(scene, &request, &mut report);
+    check.file(findings);
     commands.insert_resource(SceneOrigin(around.centre()));
 }
 
