@@ -18,12 +18,25 @@ pub(crate) fn execute(options: &StagesArgs) -> Result<(), Failure> {
             ..RenderRequest::default()
         })?,
     };
-    let schedules = describe_schedules(&mut app).map_err(Failure::failed)?;
+    let schedules = without_sync_points(describe_schedules(&mut app).map_err(Failure::failed)?);
     print(&if options.dot {
         graph::dot(&schedules)
     } else {
         tree(&schedules)
     })
+}
+
+/// Leaves out where bevy applies commands between two systems: that is no work of a stage.
+fn without_sync_points(mut schedules: Vec<ScheduleDescription>) -> Vec<ScheduleDescription> {
+    for schedule in &mut schedules {
+        for set in &mut schedule.sets {
+            set.systems.retain(|system| !system.ends_with("::apply_deferred"));
+        }
+        schedule
+            .sets
+            .retain(|set| !set.name.is_empty() || !set.systems.is_empty());
+    }
+    schedules
 }
 
 fn tree(schedules: &[ScheduleDescription]) -> String {
@@ -82,6 +95,20 @@ mod tests {
         );
         assert_eq!(short_path("a::b::spawn<c::d::Sphere, e::F>"), "a::spawn<Sphere, F>");
         assert_eq!(short_path("alone"), "alone");
+    }
+
+    #[test]
+    fn sync_points_are_left_out() {
+        let set = |name: &str, systems: &[&str]| SetDescription {
+            name: name.into(),
+            systems: systems.iter().map(|&system| system.into()).collect(),
+        };
+        let sync = "bevy_ecs::schedule::executor::apply_deferred";
+        let schedules = without_sync_points(vec![ScheduleDescription {
+            name: "Load".into(),
+            sets: vec![set("Compose", &["a::b", sync]), set("Spawn", &[]), set("", &[sync])],
+        }]);
+        assert_eq!(schedules[0].sets, [set("Compose", &["a::b"]), set("Spawn", &[])]);
     }
 
     #[test]

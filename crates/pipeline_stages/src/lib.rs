@@ -23,6 +23,8 @@
 //! ```
 
 use bevy_app::{App, Plugin};
+use bevy_ecs::schedule::IntoScheduleConfigs;
+use pipeline_core::Prepare;
 
 pub mod camera;
 pub mod geometry;
@@ -46,5 +48,11 @@ impl Plugin for DefaultStages {
             path_tracing::PathTracingPlugin,
             image::ImagePlugin,
         ));
+        // These three report trouble and set the clock when they prepare; the film comes first, since it is what a bad
+        // resolution fails on.
+        app.configure_sets(
+            Prepare,
+            (image::ImageSystems, camera::CameraSystems, photon_map::PhotonMapSystems).chain(),
+        );
     }
 }

@@ -106,7 +106,12 @@ pub fn component_place(scene: &Scene, prim: u32, component: &str) -> Option<Plac
 /// Where the first of some fields that is written stands, else the component, else the prim.
 #[must_use]
 pub fn field_place(scene: &Scene, prim: u32, component: &str, fields: &[&str]) -> Option<Place> {
-    let found = scene.prims.get(prim as usize).and_then(|prim| prim.component(component));
+    let found = scene
+        .prims
+        .get(prim as usize)
+        .and_then(|prim| prim.component(component));
     let field = found.and_then(|found| fields.iter().find_map(|name| found.field(name)));
-    field.map(|field| field.place).or_else(|| component_place(scene, prim, component))
+    field
+        .map(|field| field.place)
+        .or_else(|| component_place(scene, prim, component))
 }

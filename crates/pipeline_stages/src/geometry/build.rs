@@ -2,9 +2,7 @@ use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3};
 use pipeline_core::{Counters, record_items};
 use pipeline_data::vocabulary::{Findings, GeometryComponents, GeometrySource, Mesh, SceneReport, component_place};
-use pipeline_data::{
-    Acceleration, InstancePrims, MeshStore, PrimIndex, SceneOrigin, WorldTransform,
-};
+use pipeline_data::{Acceleration, InstancePrims, MeshStore, PrimIndex, SceneOrigin, WorldTransform};
 use scene_format::{Diagnostic, Scene};
 use spatial::{Geometry, Instance, RayScene, SpatialError, TriangleMesh};
 use std::collections::BTreeMap;
@@ -111,7 +109,11 @@ impl Parts<'_> {
         let geometry = match self.row_of_mesh.get(&(row, smooth)) {
             Some(geometry) => *geometry,
             None => {
-                let triangles = if smooth { Arc::clone(&imported.mesh) } else { without_normals(&imported.mesh) };
+                let triangles = if smooth {
+                    Arc::clone(&imported.mesh)
+                } else {
+                    without_normals(&imported.mesh)
+                };
                 let geometry = self.add_geometry(Geometry::Mesh(triangles));
                 self.row_of_mesh.insert((row, smooth), geometry);
                 geometry
@@ -123,7 +125,10 @@ impl Parts<'_> {
     /// Says what is wrong with which prim, after the whole could not be built because of `first`.
     fn find_errors(&self, first: &SpatialError, scene: &Scene, findings: &mut Findings) {
         for (row, instance) in self.instances.iter().enumerate() {
-            let alone = vec![Instance { geometry: 0, ..*instance }];
+            let alone = vec![Instance {
+                geometry: 0,
+                ..*instance
+            }];
             let geometry = self.geometries[instance.geometry as usize].clone();
             if let Err(error) = RayScene::build(vec![geometry], alone) {
                 let (component, finding) = describe(&error, scene, self.prims[row], self.components[row]);
@@ -155,8 +160,13 @@ fn describe<'c>(error: &SpatialError, scene: &Scene, prim: u32, component: &'c s
         _ => ("bad-geometry", component, error.to_string()),
     };
     // The row in the message is that of a scene of one, which says nothing to anybody.
-    let what = what.trim_start_matches("instance 0: ").trim_start_matches("geometry 0: ");
-    (component, Diagnostic::error(code, format!("`{path}` cannot be traced: {what}")))
+    let what = what
+        .trim_start_matches("instance 0: ")
+        .trim_start_matches("geometry 0: ");
+    (
+        component,
+        Diagnostic::error(code, format!("`{path}` cannot be traced: {what}")),
+    )
 }
 
 fn two_geometries(scene: &Scene, prim: u32, first: &str, second: &str) -> Diagnostic {
@@ -164,7 +174,9 @@ fn two_geometries(scene: &Scene, prim: u32, first: &str, second: &str) -> Diagno
     let message = format!("`{path}` has two geometries, `{first}` and `{second}`");
     let finding = Diagnostic::error("two-geometries", message)
         .note("a prim has one; put the other on a child")
-        .note(format!("`without: [\"{first}\"]` removes one that a weaker opinion brings"));
+        .note(format!(
+            "`without: [\"{first}\"]` removes one that a weaker opinion brings"
+        ));
     match component_place(scene, prim, first) {
         Some(place) => finding.also(place, format!("`{first}` is written")),
         None => finding,

@@ -3,9 +3,9 @@
 //! Scene: `Transform`, `LookAt`, and one of `Sphere`, `Quad`, `Disc`, `Cuboid`, `Cylinder`, `Torus`, `Band`, `Mesh`.
 //! Sets: `resolve_transforms` in [`PrepareSystems::ResolveTransforms`] places every prim in the world
 //! ([`WorldTransform`](pipeline_data::WorldTransform)) and finds the middle of all geometry
-//! ([`SceneOrigin`](pipeline_data::SceneOrigin)); `build_acceleration` in [`PrepareSystems::BuildAcceleration`] moves the
-//! geometry there, in `f64`, and builds the ray scene ([`Acceleration`](pipeline_data::Acceleration)), whose instances
-//! are listed by prim in [`InstancePrims`](pipeline_data::InstancePrims), in the order of the scene.
+//! ([`SceneOrigin`]); `build_acceleration` in [`PrepareSystems::BuildAcceleration`] moves the
+//! geometry there, in `f64`, and builds the ray scene ([`Acceleration`]), whose instances
+//! are listed by prim in [`InstancePrims`], in the order of the scene.
 //!
 //! Counters: `geometry/instances`.
 //!

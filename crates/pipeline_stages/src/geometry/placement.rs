@@ -22,7 +22,8 @@ pub(super) enum PlacementError {
     UpAlongView,
 }
 
-/// Axes that span less than this share of their box count as singular; the limit of `spatial`.
+/// Axes that span less than this share of their box count as singular, and so does an axis that is shorter than this
+/// share of the longest. The former is the limit of `spatial`.
 const SINGULAR: f64 = 1e-12;
 /// Sine of the least angle between up and view.
 const PARALLEL: f64 = 1e-7;
@@ -54,8 +55,9 @@ pub(super) fn place(
         return Err(PlacementError::NotFinite);
     }
     let axes = world.matrix3;
-    let most = axes.x_axis.length() * axes.y_axis.length() * axes.z_axis.length();
-    if axes.determinant().abs() > SINGULAR * most {
+    let lengths = DVec3::new(axes.x_axis.length(), axes.y_axis.length(), axes.z_axis.length());
+    let spans = axes.determinant().abs() > SINGULAR * lengths.element_product();
+    if spans && lengths.min_element() > SINGULAR * lengths.max_element() {
         Ok(world)
     } else {
         Err(PlacementError::Singular)

@@ -36,7 +36,9 @@ pub(super) fn resolve_transforms(
     for (entity, index, transform, look_at, geometry) in rows {
         let row = index.0 as usize;
         check_matrix_alone(scene, index.0, &mut findings);
-        let parent = scene.prims[row].parent.map_or(Some(DAffine3::IDENTITY), |parent| world_of_prim[parent]);
+        let parent = scene.prims[row]
+            .parent
+            .map_or(Some(DAffine3::IDENTITY), |parent| world_of_prim[parent]);
         let world = parent.and_then(|parent| match place(&parent, transform, look_at) {
             Ok(world) => Some(world),
             Err(error) => {
@@ -60,12 +62,7 @@ pub(super) fn resolve_transforms(
     commands.insert_resource(SceneOrigin(around.centre()));
 }
 
-fn add_geometry(
-    around: &mut WorldBox,
-    world: &DAffine3,
-    geometry: &GeometryComponentsItem<'_, '_>,
-    store: &MeshStore,
-) {
+fn add_geometry(around: &mut WorldBox, world: &DAffine3, geometry: &GeometryComponentsItem<'_, '_>, store: &MeshStore) {
     match geometry.sources().next() {
         Some((_, GeometrySource::Shape(shape))) => {
             let half = half_extent(&shape);
@@ -83,8 +80,14 @@ fn add_geometry(
 
 /// A matrix says all that a transform can say.
 fn check_matrix_alone(scene: &Scene, prim: u32, findings: &mut Findings) {
-    let Some(transform) = scene.prims[prim as usize].component("Transform") else { return };
-    let written = |name: &str| transform.field(name).filter(|field| !matches!(field.state, FieldState::Blocked));
+    let Some(transform) = scene.prims[prim as usize].component("Transform") else {
+        return;
+    };
+    let written = |name: &str| {
+        transform
+            .field(name)
+            .filter(|field| !matches!(field.state, FieldState::Blocked))
+    };
     let Some(matrix) = written("matrix") else { return };
     let others = ["translate", "rotate", "scale", "quaternion"];
     if let Some(other) = others.into_iter().find_map(written) {

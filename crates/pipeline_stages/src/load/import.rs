@@ -75,7 +75,10 @@ fn list_files(scene: &Scene, meshes: Query<(&PrimIndex, &Mesh)>, findings: &mut 
     for (index, mesh) in rows {
         let place = field_place(scene, index.0, "Mesh", &["file"]);
         let path = Path::new(&mesh.file.0);
-        if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj")) {
+        if !path
+            .extension()
+            .is_some_and(|ending| ending.eq_ignore_ascii_case("obj"))
+        {
             let message = "only `.obj` files can be read as a mesh yet";
             findings.push_at(place, Diagnostic::error("not-supported-yet", message));
             continue;
@@ -122,8 +125,16 @@ fn read(path: &Path, limit: u64) -> std::io::Result<Vec<u8>> {
 /// Names a file the way the scene was named: below its folder if it lies there.
 fn shown_path(path: &Path, scene: &Path) -> String {
     let folder = scene.parent().unwrap_or(Path::new(""));
-    let canonical = if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.canonicalize();
-    match canonical.ok().and_then(|canonical| path.strip_prefix(canonical).ok().map(Path::to_path_buf)) {
+    let canonical = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    }
+    .canonicalize();
+    match canonical
+        .ok()
+        .and_then(|canonical| path.strip_prefix(canonical).ok().map(Path::to_path_buf))
+    {
         Some(rest) => folder.join(rest).display().to_string(),
         None => path.display().to_string(),
     }

@@ -18,7 +18,11 @@ pub(super) fn spawn_prims(world: &mut World) {
     let registry = registry.read();
     let schema = match Schema::new(&registry, is_scene_component) {
         Ok(schema) => schema,
-        Err(error) => return world.resource_mut::<Report>().fail(format!("error[bad-schema]: {error}\n")),
+        Err(error) => {
+            return world
+                .resource_mut::<Report>()
+                .fail(format!("error[bad-schema]: {error}\n"));
+        }
     };
     let count = world.resource_scope(|world, composed: Mut<ComposedScene>| {
         let scene = &composed.0;

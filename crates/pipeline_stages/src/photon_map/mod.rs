@@ -60,20 +60,22 @@ struct PhotonRun {
     batch: Vec<Option<EmittedPhoton>>,
     /// Photons that landed, in (path, bounce) order; flux not yet divided by the number emitted.
     landed: Vec<Photon>,
+    /// Set by `trace_photons` after the last batch.
+    is_over: bool,
     /// How the map is read.
     density: DensitySettings,
 }
 
 impl PhotonRun {
-    /// True when no more photons are to be emitted.
-    fn is_complete(&self) -> bool {
-        self.landed.len() as u64 >= self.wanted
-            || u64::from(self.emitted) >= self.wanted.saturating_mul(MAX_EMITTED_RATIO).min(u64::from(u32::MAX - BATCH_PATHS))
+    /// True when enough photons have landed, or too many were emitted for more to be worth waiting for.
+    fn has_enough(&self) -> bool {
+        let most = self.wanted.saturating_mul(MAX_EMITTED_RATIO).min(u64::from(u32::MAX - BATCH_PATHS));
+        self.landed.len() as u64 >= self.wanted || u64::from(self.emitted) >= most
     }
 }
 
-fn run_is_complete(run: Option<Res<PhotonRun>>) -> bool {
-    run.is_some_and(|run| run.is_complete())
+fn emission_is_over(run: Option<Res<PhotonRun>>) -> bool {
+    run.is_some_and(|run| run.is_over)
 }
 
 /// Adds the caustic photon map.
@@ -89,8 +91,8 @@ impl Plugin for PhotonMapPlugin {
                 (
                     emit::emit_photons.in_set(PhotonSystems::EmitPhotons),
                     trace::trace_photons.in_set(PhotonSystems::TracePhotons),
-                    store::store_photons.in_set(PhotonSystems::StorePhotons).run_if(run_is_complete),
-                    build::build_photon_map.in_set(PhotonSystems::BuildPhotonMaps).run_if(run_is_complete),
+                    store::store_photons.in_set(PhotonSystems::StorePhotons).run_if(emission_is_over),
+                    build::build_photon_map.in_set(PhotonSystems::BuildPhotonMaps).run_if(emission_is_over),
                 )
                     .in_set(PhotonMapSystems)
                     .run_if(resource_exists::<PhotonRun>),

@@ -72,6 +72,7 @@ pub(super) fn plan_photons(
         emitted: 0,
         batch: Vec::new(),
         landed: Vec::new(),
+        is_over: false,
         density: DensitySettings { nearest: map.nearest as usize, max_radius, filter: map.filter.into() },
     });
     clock.photons_pending += 1;

@@ -48,7 +48,8 @@ pub(super) fn trace_photons(
     emitted.0.add(run.batch.len() as u64);
     record_items(run.batch.len());
     progress.set_done((run.landed.len() as u64).min(run.wanted));
-    if run.is_complete() {
+    if run.has_enough() {
+        run.is_over = true;
         clock.photons_pending -= 1;
         if (run.landed.len() as u64) < run.wanted {
             report.warn(format!(

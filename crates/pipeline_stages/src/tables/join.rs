@@ -44,7 +44,12 @@ fn warn_of_unreachable_caustics(
     list: &LightList,
     findings: &mut Findings,
 ) {
-    let Some(light) = list.point_light.filter(|_| settings.methods.caustic == CausticMethod::Trace) else { return };
+    let Some(light) = list
+        .point_light
+        .filter(|_| settings.methods.caustic == CausticMethod::Trace)
+    else {
+        return;
+    };
     let is_delta = |row: &u32| {
         let bsdf = &table.materials[*row as usize].bsdf;
         bsdf.has_specular() && !bsdf.needs_light_sampling()

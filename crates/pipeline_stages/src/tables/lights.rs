@@ -1,10 +1,10 @@
 use bevy_ecs::prelude::*;
 use glam::Vec3;
 use pipeline_core::Counters;
-use pipeline_data::vocabulary::{Emission, EnvironmentLight, Findings, PointLight, SceneReport, component_place, field_place};
-use pipeline_data::{
-    Acceleration, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, WorldTransform,
+use pipeline_data::vocabulary::{
+    Emission, EnvironmentLight, Findings, PointLight, SceneReport, component_place, field_place,
 };
+use pipeline_data::{Acceleration, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, WorldTransform};
 use radiometry::Rgb;
 use scene_format::{Diagnostic, Place, Scene};
 use std::collections::BTreeMap;
@@ -53,7 +53,10 @@ pub(super) fn list_lights(
     let mut collector = Collector {
         scene: check.scene(),
         acceleration: &acceleration,
-        instance_of_prim: (0..).zip(&instances.0).map(|(instance, prim)| (*prim, instance)).collect(),
+        instance_of_prim: (0..)
+            .zip(&instances.0)
+            .map(|(instance, prim)| (*prim, instance))
+            .collect(),
         origin: &origin,
         findings: Findings::default(),
         list: LightList::default(),
@@ -77,7 +80,9 @@ pub(super) fn list_lights(
     if !check.failed() && !collector.findings.has_error() {
         collector.check_presence(check.request());
     }
-    counters.counter("tables/lights").add(collector.list.lights.len() as u64);
+    counters
+        .counter("tables/lights")
+        .add(collector.list.lights.len() as u64);
     let findings = collector.findings;
     *list = collector.list;
     check.file(findings);
@@ -106,13 +111,17 @@ impl Collector<'_> {
         let Some(rays) = &self.acceleration.0 else { return };
         let place = component_place(self.scene, prim, "Emission");
         let Some(instance) = self.instance_of_prim.get(&prim).copied() else {
-            let message = format!("`Emission` of `{}` has no effect: the prim has no geometry", self.path(prim));
+            let message = format!(
+                "`Emission` of `{}` has no effect: the prim has no geometry",
+                self.path(prim)
+            );
             let note = "a light without a surface is a `PointLight`";
-            self.findings.push_at(place, Diagnostic::warning("without-effect", message).note(note));
+            self.findings
+                .push_at(place, Diagnostic::warning("without-effect", message).note(note));
             return;
         };
         let area = rays.instance_area(instance);
-        if !(area > 0.0) {
+        if area.is_nan() || area <= 0.0 {
             let message = format!("`{}` cannot shine: its surface has no area", self.path(prim));
             self.findings.push_at(place, Diagnostic::warning("no-area", message));
             self.dark.get_or_insert((prim, "Emission"));
@@ -137,7 +146,10 @@ impl Collector<'_> {
         };
         let position = (world.0.translation - self.origin.0).as_vec3();
         if !position.is_finite() {
-            let message = format!("`{}` is too far from the scene's geometry for single precision", self.path(prim));
+            let message = format!(
+                "`{}` is too far from the scene's geometry for single precision",
+                self.path(prim)
+            );
             let place = component_place(self.scene, prim, "Transform");
             self.findings.push_at(place, Diagnostic::error("too-far", message));
             return;
@@ -145,7 +157,12 @@ impl Collector<'_> {
         if !intensity.is_black() && self.list.point_light.is_none() {
             self.list.point_light = component_place(self.scene, prim, "PointLight");
         }
-        self.add(prim, "PointLight", intensity, LightSource::Point { position, intensity });
+        self.add(
+            prim,
+            "PointLight",
+            intensity,
+            LightSource::Point { position, intensity },
+        );
     }
 
     fn add_environment(&mut self, prim: u32, light: &EnvironmentLight) {
@@ -153,11 +170,16 @@ impl Collector<'_> {
         if light.file.is_some() {
             let finding = Diagnostic::error("not-supported-yet", "`EnvironmentLight.file` is not supported yet")
                 .note("a uniform environment is `EnvironmentLight: (radiance: (1, 1, 1))`");
-            self.findings.push_at(field_place(self.scene, prim, "EnvironmentLight", &["file"]), finding);
+            self.findings
+                .push_at(field_place(self.scene, prim, "EnvironmentLight", &["file"]), finding);
             return;
         }
         if let Some(first) = self.environment {
-            let message = format!("both `{}` and `{}` carry `EnvironmentLight`", self.path(first), self.path(prim));
+            let message = format!(
+                "both `{}` and `{}` carry `EnvironmentLight`",
+                self.path(first),
+                self.path(prim)
+            );
             let mut finding = Diagnostic::error("two-environments", message)
                 .note("a scene has one; `active: false` switches the other off");
             if let Some(place) = component_place(self.scene, first, "EnvironmentLight") {
@@ -168,7 +190,12 @@ impl Collector<'_> {
         }
         self.environment = Some(prim);
         let radiance = Rgb::from(light.radiance) * light.scale;
-        self.add(prim, "EnvironmentLight", radiance, LightSource::Environment { radiance });
+        self.add(
+            prim,
+            "EnvironmentLight",
+            radiance,
+            LightSource::Environment { radiance },
+        );
     }
 
     /// Refuses a scene without light; one without geometry too, unless its environment can be seen.

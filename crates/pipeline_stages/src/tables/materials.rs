@@ -1,3 +1,4 @@
+use super::surface::{conductor_material, dielectric_material, diffuse_material};
 use bevy_ecs::prelude::*;
 use pipeline_core::{Counters, record_items};
 use pipeline_data::vocabulary::{
@@ -5,8 +6,6 @@ use pipeline_data::vocabulary::{
     LightTransport, MaterialBinding, SceneReport, component_place, field_place,
 };
 use pipeline_data::{InstancePrims, MeshStore, PrimIndex, RenderSettings};
-use radiometry::Rgb;
-use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, DiffuseBsdf, Metal, Microsurface};
 use scene_format::{Diagnostic, Scene};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -74,15 +73,22 @@ pub(super) fn build_material_table(
     };
     rows.add_materials(&materials, specular_alpha, &mut findings);
     rows.add_bindings(&bindings, &mut findings);
-    let geometry: BTreeMap<u32, _> = geometry.iter().map(|(index, parts, emits)| (index.0, (parts, emits))).collect();
+    let geometry: BTreeMap<u32, _> = geometry
+        .iter()
+        .map(|(index, parts, emits)| (index.0, (parts, emits)))
+        .collect();
     for prim in &instances.0 {
-        let Some((parts, emits)) = geometry.get(prim) else { continue };
+        let Some((parts, emits)) = geometry.get(prim) else {
+            continue;
+        };
         let row = rows.row_for(*prim, *emits);
         rows.table.of_instance.push(row);
         rows.check_inside(*prim, parts, &store, &mut findings);
     }
     record_items(rows.table.of_instance.len());
-    counters.counter("tables/materials").add(rows.table.materials.len() as u64);
+    counters
+        .counter("tables/materials")
+        .add(rows.table.materials.len() as u64);
     *table = rows.table;
     check.file(findings);
 }
@@ -115,9 +121,11 @@ impl Rows<'_> {
             let names: Vec<&str> = names.into_iter().flatten().collect();
             if let [first, second, ..] = names[..] {
                 let message = format!("`{}` has two materials, `{first}` and `{second}`", self.path(prim));
-                let mut finding = Diagnostic::error("two-materials", message).note("a prim has one").note(format!(
-                    "`without: [\"{first}\"]` removes one that a weaker opinion brings"
-                ));
+                let mut finding = Diagnostic::error("two-materials", message)
+                    .note("a prim has one")
+                    .note(format!(
+                        "`without: [\"{first}\"]` removes one that a weaker opinion brings"
+                    ));
                 if let Some(place) = component_place(self.scene, prim, first) {
                     finding = finding.also(place, format!("`{first}` is written"));
                 }
@@ -126,14 +134,19 @@ impl Rows<'_> {
             let material = match (diffuse, conductor, dielectric) {
                 (Some(diffuse), _, _) => diffuse_material(diffuse),
                 (_, Some(conductor), _) => conductor_material(conductor, specular_alpha, self.scene, prim, findings),
-                (_, _, Some(dielectric)) => {
-                    dielectric_material(dielectric, specular_alpha, self.scene, prim, findings)
-                }
+                (_, _, Some(dielectric)) => dielectric_material(dielectric, specular_alpha, self.scene, prim, findings),
                 _ => continue,
             };
             let row = self.add(material);
             let needs_inside = dielectric.is_some_and(|dielectric| !dielectric.thin);
-            self.of_prim.insert(prim, Row { row, prim, needs_inside });
+            self.of_prim.insert(
+                prim,
+                Row {
+                    row,
+                    prim,
+                    needs_inside,
+                },
+            );
         }
     }
 
@@ -150,10 +163,16 @@ impl Rows<'_> {
                     Diagnostic::error("no-material", format!("`{path}` has no material component"))
                         .note(format!("materials: {MATERIALS}"))
                 } else {
-                    Diagnostic::error("no-material", format!("`{path}` is not rendered, so it has no material"))
-                        .note("it and every prim above it must be an active `Def`")
+                    Diagnostic::error(
+                        "no-material",
+                        format!("`{path}` is not rendered, so it has no material"),
+                    )
+                    .note("it and every prim above it must be an active `Def`")
                 };
-                findings.push_at(field_place(self.scene, index.0, "MaterialBinding", &["target"]), finding);
+                findings.push_at(
+                    field_place(self.scene, index.0, "MaterialBinding", &["target"]),
+                    finding,
+                );
             }
             self.bindings.insert(index.0, bound);
         }
@@ -201,8 +220,12 @@ impl Rows<'_> {
         store: &MeshStore,
         findings: &mut Findings,
     ) {
-        let Some(material) = self.component_for(prim).filter(|found| found.needs_inside) else { return };
-        let Some((name, source)) = parts.sources().next() else { return };
+        let Some(material) = self.component_for(prim).filter(|found| found.needs_inside) else {
+            return;
+        };
+        let Some((name, source)) = parts.sources().next() else {
+            return;
+        };
         let closed = match source {
             GeometrySource::Shape(shape) => shape.is_closed(),
             GeometrySource::Mesh(mesh) => store.get(Path::new(&mesh.file.0)).is_none_or(|mesh| mesh.is_closed()),
@@ -218,87 +241,5 @@ impl Rows<'_> {
             finding = finding.also(place, "the material".to_owned());
         }
         findings.push_at(component_place(self.scene, prim, name), finding);
-    }
-}
-
-fn diffuse_material(diffuse: &Diffuse) -> Material {
-    Material {
-        bsdf: Bsdf::Diffuse(DiffuseBsdf::new(diffuse.albedo.into())),
-        absorption: Rgb::BLACK,
-    }
-}
-
-fn conductor_material(
-    conductor: &Conductor,
-    specular_alpha: f32,
-    scene: &Scene,
-    prim: u32,
-    findings: &mut Findings,
-) -> Material {
-    let fresnel = match (&conductor.metal, conductor.eta, conductor.k, conductor.f0) {
-        (Some(name), ..) => Metal::from_name(name).map(ConductorFresnel::from).unwrap_or_else(|| {
-            findings.push_at(field_place(scene, prim, "Conductor", &["metal"]), unknown_metal(name));
-            ConductorFresnel::Constant(Rgb::BLACK)
-        }),
-        (_, Some(eta), Some(k), _) => ConductorFresnel::Complex {
-            eta: eta.into(),
-            k: k.into(),
-        },
-        (_, _, _, Some(f0)) => ConductorFresnel::Schlick(f0.into()),
-        _ => ConductorFresnel::Constant(conductor.reflectance.into()),
-    };
-    let surface = Microsurface::from_roughness(conductor.roughness, specular_alpha)
-        .with_energy_compensation(conductor.energy_compensation);
-    Material {
-        bsdf: Bsdf::Conductor(ConductorBsdf::new(fresnel, surface)),
-        absorption: Rgb::BLACK,
-    }
-}
-
-fn unknown_metal(name: &str) -> Diagnostic {
-    let folded = name.to_ascii_lowercase();
-    let distance = |known: &str| strsim::damerau_levenshtein(&folded, known);
-    let nearest = Metal::names().min_by_key(|known| distance(known)).filter(|known| distance(known) <= 2);
-    let names: Vec<&str> = Metal::names().collect();
-    Diagnostic::error("unknown-metal", format!("there is no metal `{name}`"))
-        .suggest(nearest)
-        .note(format!("metals: {}", names.join(", ")))
-        .note("for another one, write `eta` and `k`, or `f0`")
-}
-
-fn dielectric_material(
-    dielectric: &Dielectric,
-    specular_alpha: f32,
-    scene: &Scene,
-    prim: u32,
-    findings: &mut Findings,
-) -> Material {
-    let place = |field: &str| field_place(scene, prim, "Dielectric", &[field]);
-    if dielectric.dispersion.is_some() {
-        let finding = Diagnostic::error("not-supported-yet", "`Dielectric.dispersion` is not supported yet")
-            .note("leave it out: glass then bends all colours alike");
-        findings.push_at(place("dispersion"), finding);
-    }
-    if !dielectric.thin {
-        let surface = Microsurface::from_roughness(dielectric.roughness, specular_alpha)
-            .with_energy_compensation(dielectric.energy_compensation);
-        return Material {
-            bsdf: Bsdf::Dielectric(DielectricBsdf::new(dielectric.ior, dielectric.tint.into(), surface)),
-            absorption: dielectric.absorption.into(),
-        };
-    }
-    if dielectric.roughness > 0.0 {
-        let finding = Diagnostic::error("rough-pane", "a `Dielectric` that is `thin` cannot have `roughness`")
-            .note("give the pane a thickness: a closed `Cuboid` without `thin`");
-        findings.push_at(place("roughness"), finding);
-    }
-    if dielectric.absorption != glam::Vec3::ZERO {
-        let finding = Diagnostic::warning("without-effect", "`absorption` of a `thin` dielectric has no effect")
-            .note("a pane has no inside; `tint` colours it");
-        findings.push_at(place("absorption"), finding);
-    }
-    Material {
-        bsdf: Bsdf::Dielectric(DielectricBsdf::thin(dielectric.ior, dielectric.tint.into())),
-        absorption: Rgb::BLACK,
     }
 }

@@ -20,6 +20,7 @@ mod join;
 mod lights;
 mod materials;
 mod settings;
+mod surface;
 #[cfg(test)]
 mod tests;
 

@@ -3,11 +3,10 @@ use bevy_ecs::prelude::*;
 use film::{ChannelLayout, FilmWindow};
 use glam::UVec2;
 use pipeline_data::vocabulary::{
-    Camera, Film, Findings, IndirectMethod, LightTransport, Render, SceneReport, SpecularMethod, component_place, field_place,
+    Camera, Film, Findings, IndirectMethod, LightTransport, Render, SceneReport, SpecularMethod, component_place,
+    field_place,
 };
-use pipeline_data::{
-    CameraFrame, PrimIndex, RenderRequest, RenderSettings, SceneOrigin, WorldTransform,
-};
+use pipeline_data::{CameraFrame, PrimIndex, RenderRequest, RenderSettings, SceneOrigin, WorldTransform};
 use scene_format::{Diagnostic, Scene};
 
 /// A film that would take more memory than this is refused: it is a slip of the pen, not a picture.
@@ -59,20 +58,30 @@ fn the_render<'a>(
     let mut all: Vec<RenderPrim<'a>> = renders.iter().collect();
     all.sort_by_key(|(index, ..)| **index);
     let Some(first) = all.first() else {
-        let camera = cameras.first().map_or("/Camera", |(index, ..)| &scene.prims[index.0 as usize].path);
-        let message = format!("{} has no prim with `Render`, so there is nothing to render", request.scene.display());
+        let camera = cameras
+            .first()
+            .map_or("/Camera", |(index, ..)| &scene.prims[index.0 as usize].path);
+        let message = format!(
+            "{} has no prim with `Render`, so there is nothing to render",
+            request.scene.display()
+        );
         findings.push(
             Diagnostic::error("no-render", message)
                 .note("write, for example:")
-                .note(format!("    \"/Render\": Def(Render: (camera: \"{camera}\"), Film: (resolution: (512, 512))),")),
+                .note(format!(
+                    "    \"/Render\": Def(Render: (camera: \"{camera}\"), Film: (resolution: (512, 512))),"
+                )),
         );
         return None;
     };
     let first_path = &scene.prims[first.0.0 as usize].path;
     for (index, ..) in &all[1..] {
         let path = &scene.prims[index.0 as usize].path;
-        let mut finding = Diagnostic::error("two-renders", format!("both `{first_path}` and `{path}` carry `Render`"))
-            .note("one prim is rendered; `active: false` switches the other off");
+        let mut finding = Diagnostic::error(
+            "two-renders",
+            format!("both `{first_path}` and `{path}` carry `Render`"),
+        )
+        .note("one prim is rendered; `active: false` switches the other off");
         if let Some(place) = component_place(scene, first.0.0, "Render") {
             finding = finding.also(place, format!("`Render` of `{first_path}`"));
         }
@@ -117,7 +126,10 @@ fn settings(
 /// Checks what the command line may say, which has no place, and what only shows together.
 fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest, findings: &mut Findings) {
     let RenderSettings {
-        resolution, crop_min, crop_max, ..
+        resolution,
+        crop_min,
+        crop_max,
+        ..
     } = settings;
     let window = FilmWindow {
         resolution: *resolution,
@@ -125,7 +137,10 @@ fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest,
         crop_max: *crop_max,
     };
     if settings.samples == 0 {
-        findings.push(Diagnostic::error("out-of-range", "the number of samples must be at least 1, but is 0"));
+        findings.push(Diagnostic::error(
+            "out-of-range",
+            "the number of samples must be at least 1, but is 0",
+        ));
     }
     if FilmWindow::full(*resolution).validate().is_err() {
         let message = format!(
@@ -170,40 +185,64 @@ fn find_camera(
     findings: &mut Findings,
 ) -> Option<CameraFrame> {
     let path = &render.camera.0;
-    let Some((index, camera, world)) = cameras.iter().find(|(index, ..)| scene.prims[index.0 as usize].path == *path)
+    let Some((index, camera, world)) = cameras
+        .iter()
+        .find(|(index, ..)| scene.prims[index.0 as usize].path == *path)
     else {
         let rendered = scene.prim(path).is_some_and(|prim| prim.rendered);
         let finding = if rendered {
-            Diagnostic::error("no-camera", format!("`{path}` has no `Camera`, so nothing can be seen through it"))
+            Diagnostic::error(
+                "no-camera",
+                format!("`{path}` has no `Camera`, so nothing can be seen through it"),
+            )
         } else {
-            Diagnostic::error("no-camera", format!("`{path}` is not rendered, so nothing can be seen through it"))
-                .note("it and every prim above it must be an active `Def`")
+            Diagnostic::error(
+                "no-camera",
+                format!("`{path}` is not rendered, so nothing can be seen through it"),
+            )
+            .note("it and every prim above it must be an active `Def`")
         };
-        let names: Vec<&str> = cameras.iter().map(|(index, ..)| scene.prims[index.0 as usize].path.as_str()).collect();
+        let names: Vec<&str> = cameras
+            .iter()
+            .map(|(index, ..)| scene.prims[index.0 as usize].path.as_str())
+            .collect();
         let note = if names.is_empty() {
             format!("no prim has one; write, for example, `\"{path}\": Def(Camera: (fov: 40), ..)`")
         } else {
             format!("prims with `Camera`: {}", names.join(", "))
         };
-        findings.push_at(field_place(scene, settings.render_prim, "Render", &["camera"]), finding.note(note));
+        findings.push_at(
+            field_place(scene, settings.render_prim, "Render", &["camera"]),
+            finding.note(note),
+        );
         return None;
     };
     // A camera that could not be placed was reported where that was found.
     let world = (*world)?;
     let Some(frame) = rigid_frame(&world.0, origin.0) else {
         let message = format!("`{path}` is too far from the scene's geometry for single precision");
-        findings.push_at(component_place(scene, index.0, "Transform"), Diagnostic::error("too-far", message));
+        findings.push_at(
+            component_place(scene, index.0, "Transform"),
+            Diagnostic::error("too-far", message),
+        );
         return None;
     };
     let resolution = settings.resolution.as_vec2();
-    Some(CameraFrame(transport::Camera::new(frame, camera.fov.to_radians(), resolution)))
+    Some(CameraFrame(transport::Camera::new(
+        frame,
+        camera.fov.to_radians(),
+        resolution,
+    )))
 }
 
 fn warn_of_strays(scene: &Scene, strays: &Query<Stray<'_>, IsStray>, findings: &mut Findings) {
     let mut strays: Vec<_> = strays.iter().collect();
     strays.sort_by_key(|(index, ..)| **index);
     for (index, film, methods) in strays {
-        for (name, _) in [("Film", film), ("LightTransport", methods)].into_iter().filter(|(_, there)| *there) {
+        for (name, _) in [("Film", film), ("LightTransport", methods)]
+            .into_iter()
+            .filter(|(_, there)| *there)
+        {
             let path = &scene.prims[index.0 as usize].path;
             let message = format!("`{name}` of `{path}` has no effect");
             let finding = Diagnostic::warning("without-effect", message)

@@ -1,0 +1,94 @@
+//! From a material component to the row that light transport reads.
+
+use pipeline_data::vocabulary::{Conductor, Dielectric, Diffuse, Findings, field_place};
+use radiometry::Rgb;
+use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, DiffuseBsdf, Metal, Microsurface};
+use scene_format::{Diagnostic, Scene};
+use transport::Material;
+
+/// A matt surface.
+pub(super) fn diffuse_material(diffuse: &Diffuse) -> Material {
+    Material {
+        bsdf: Bsdf::Diffuse(DiffuseBsdf::new(diffuse.albedo.into())),
+        absorption: Rgb::BLACK,
+    }
+}
+
+/// A metal. An unknown one is reported, and black.
+pub(super) fn conductor_material(
+    conductor: &Conductor,
+    specular_alpha: f32,
+    scene: &Scene,
+    prim: u32,
+    findings: &mut Findings,
+) -> Material {
+    let fresnel = match (&conductor.metal, conductor.eta, conductor.k, conductor.f0) {
+        (Some(name), ..) => Metal::from_name(name).map(ConductorFresnel::from).unwrap_or_else(|| {
+            findings.push_at(field_place(scene, prim, "Conductor", &["metal"]), unknown_metal(name));
+            ConductorFresnel::Constant(Rgb::BLACK)
+        }),
+        (_, Some(eta), Some(k), _) => ConductorFresnel::Complex {
+            eta: eta.into(),
+            k: k.into(),
+        },
+        (_, _, _, Some(f0)) => ConductorFresnel::Schlick(f0.into()),
+        _ => ConductorFresnel::Constant(conductor.reflectance.into()),
+    };
+    let surface = Microsurface::from_roughness(conductor.roughness, specular_alpha)
+        .with_energy_compensation(conductor.energy_compensation);
+    Material {
+        bsdf: Bsdf::Conductor(ConductorBsdf::new(fresnel, surface)),
+        absorption: Rgb::BLACK,
+    }
+}
+
+fn unknown_metal(name: &str) -> Diagnostic {
+    let folded = name.to_ascii_lowercase();
+    let distance = |known: &str| strsim::damerau_levenshtein(&folded, known);
+    let nearest = Metal::names()
+        .min_by_key(|known| distance(known))
+        .filter(|known| distance(known) <= 2);
+    let names: Vec<&str> = Metal::names().collect();
+    Diagnostic::error("unknown-metal", format!("there is no metal `{name}`"))
+        .suggest(nearest)
+        .note(format!("metals: {}", names.join(", ")))
+        .note("for another one, write `eta` and `k`, or `f0`")
+}
+
+/// Glass, or a pane. What cannot be served is reported.
+pub(super) fn dielectric_material(
+    dielectric: &Dielectric,
+    specular_alpha: f32,
+    scene: &Scene,
+    prim: u32,
+    findings: &mut Findings,
+) -> Material {
+    let place = |field: &str| field_place(scene, prim, "Dielectric", &[field]);
+    if dielectric.dispersion.is_some() {
+        let finding = Diagnostic::error("not-supported-yet", "`Dielectric.dispersion` is not supported yet")
+            .note("leave it out: glass then bends all colours alike");
+        findings.push_at(place("dispersion"), finding);
+    }
+    if !dielectric.thin {
+        let surface = Microsurface::from_roughness(dielectric.roughness, specular_alpha)
+            .with_energy_compensation(dielectric.energy_compensation);
+        return Material {
+            bsdf: Bsdf::Dielectric(DielectricBsdf::new(dielectric.ior, dielectric.tint.into(), surface)),
+            absorption: dielectric.absorption.into(),
+        };
+    }
+    if dielectric.roughness > 0.0 {
+        let finding = Diagnostic::error("rough-pane", "a `Dielectric` that is `thin` cannot have `roughness`")
+            .note("give the pane a thickness: a closed `Cuboid` without `thin`");
+        findings.push_at(place("roughness"), finding);
+    }
+    if dielectric.absorption != glam::Vec3::ZERO {
+        let finding = Diagnostic::warning("without-effect", "`absorption` of a `thin` dielectric has no effect")
+            .note("a pane has no inside; `tint` colours it");
+        findings.push_at(place("absorption"), finding);
+    }
+    Material {
+        bsdf: Bsdf::Dielectric(DielectricBsdf::thin(dielectric.ior, dielectric.tint.into())),
+        absorption: Rgb::BLACK,
+    }
+}

@@ -1,0 +1,16 @@
+//! The program as people meet it: arguments, messages, exit codes, files.
+//!
+//! Every test runs the real binary in a folder of its own, and fails if it ever panics.
+
+#![allow(clippy::unwrap_used, reason = "a test that meets an error should fail")]
+
+mod bad_meshes;
+mod bad_scenes;
+mod command_line;
+mod comparing;
+mod disks;
+mod interruption;
+mod listing;
+mod program;
+mod rendering;
+mod same_bits;
