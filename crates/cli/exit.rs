@@ -9,7 +9,7 @@ pub(crate) const INTERRUPTED: u8 = 130;
 /// Why a command did not do what it was asked.
 #[derive(Debug)]
 pub(crate) struct Failure {
-    code: u8,
+    pub(crate) code: u8,
     messages: Vec<String>,
 }
 

@@ -40,6 +40,10 @@ impl Format {
 pub(crate) fn duration(text: &str) -> Result<Duration, String> {
     let unit_at = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
     let (number, unit) = text.split_at(unit_at);
+    let number: f64 = number
+        .trim()
+        .parse()
+        .map_err(|_| "give a number with a unit, such as 30s, 2m, 1h or 500ms".to_owned())?;
     let unit = match unit {
         "ms" => 0.001,
         "" | "s" => 1.0,
@@ -47,10 +51,6 @@ pub(crate) fn duration(text: &str) -> Result<Duration, String> {
         "h" => 3600.0,
         _ => return Err(format!("`{unit}` is no unit of time; use ms, s, m or h")),
     };
-    let number: f64 = number
-        .trim()
-        .parse()
-        .map_err(|_| "give a number with a unit, such as 30s, 2m, 1h or 500ms".to_owned())?;
     let seconds = number * unit;
     if seconds > 0.0 && seconds <= MAX_SECONDS {
         Ok(Duration::from_secs_f64(seconds))

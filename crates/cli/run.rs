@@ -10,6 +10,7 @@ use crate::session;
 use crate::summary;
 use bevy_app::App;
 use pipeline_core::{Cancellation, Counters, Outcome, Progress, RenderClock, Report};
+use pipeline_data::RenderRequest;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -70,7 +71,7 @@ pub(crate) fn render(
     Ok(Rendered { app, ended })
 }
 
-/// Tells what was rendered, and how to go on after an interruption.
+/// Tells what was rendered, and how to go on after an interruption or a time limit.
 fn report(app: &App, outcome: Outcome, quiet: bool, elapsed: Duration, written: &[PathBuf]) {
     if matches!(outcome, Outcome::BadScene | Outcome::WriteFailed) {
         return;
@@ -79,7 +80,9 @@ fn report(app: &App, outcome: Outcome, quiet: bool, elapsed: Duration, written: 
     if !quiet {
         summary::tell_result(app, elapsed, written);
     }
-    if outcome == Outcome::Interrupted && !written.is_empty() {
+    let clock = app.world().resource::<RenderClock>();
+    let is_partial = outcome == Outcome::Interrupted || clock.waves_done < clock.waves_total && !quiet;
+    if is_partial && !app.world().resource::<RenderRequest>().outputs.is_empty() {
         summary::tell_how_to_resume();
     }
 }
@@ -105,5 +108,41 @@ fn judge(app: &App, outcome: Outcome, strict: bool) -> Result<(), Failure> {
             }
         }
         Outcome::Finished => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pipeline_core::CorePlugin;
+
+    fn app() -> App {
+        let mut app = App::empty();
+        app.add_plugins(CorePlugin);
+        app
+    }
+
+    fn code(app: &App, outcome: Outcome, strict: bool) -> u8 {
+        judge(app, outcome, strict).err().map_or(0, |failure| failure.code)
+    }
+
+    #[test]
+    fn strict_renders_fail_for_dropped_samples_and_late_warnings() {
+        let mut warned = app();
+        warned.world_mut().resource_mut::<Report>().warn("few photons".into());
+        assert_eq!(code(&warned, Outcome::Finished, false), 0);
+        assert_eq!(code(&warned, Outcome::Finished, true), 2);
+        let mut counters = warned.world_mut().resource_mut::<Counters>();
+        counters.counter("image/rejected samples").add(3);
+        assert_eq!(code(&warned, Outcome::Finished, false), 0);
+        assert_eq!(code(&warned, Outcome::Finished, true), 1);
+    }
+
+    #[test]
+    fn outcomes_have_exit_codes() {
+        assert_eq!(code(&app(), Outcome::Finished, true), 0);
+        assert_eq!(code(&app(), Outcome::WriteFailed, false), 1);
+        assert_eq!(code(&app(), Outcome::BadScene, false), 2);
+        assert_eq!(code(&app(), Outcome::Interrupted, true), 130);
     }
 }

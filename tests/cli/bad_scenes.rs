@@ -111,7 +111,11 @@ fn numbers() {
         &with("(32, 32)", "(0, 32)"),
         &["scene.ron:6:", "resolution"],
     );
-    refuse("memory", &with("(32, 32)", "(65536, 65536)"), &["lower the resolution"]);
+    refuse(
+        "memory",
+        &with("(32, 32)", "(65536, 65536)"),
+        &["scene.ron:6:", "GiB", "--crop"],
+    );
     refuse(
         "photons",
         &with("photons: 2000", "photons: 4000000000"),

@@ -93,6 +93,7 @@ fn a_time_limit_ends_on_a_whole_pass() {
     let folder = Folder::with_scene(BALLS);
     let ran = folder.succeed("run scene.ron -o image.exr --samples 4000000 --time-limit 200ms");
     assert!(ran.stderr.contains("samples a pixel in "), "{}", ran.stderr);
+    assert!(ran.stderr.contains("--time-limit 200ms --resume"), "{}", ran.stderr);
     let image = film::read_exr(&folder.path("image.exr")).unwrap();
     let samples: u32 = image.attribute("pipeline.samples").unwrap().parse().unwrap();
     assert!((1..4_000_000).contains(&samples), "{samples}");

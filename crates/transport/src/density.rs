@@ -58,8 +58,8 @@ pub struct PhotonColumns {
     pub flux: Vec<Rgb>,
     /// Octahedral direction to where it came from.
     pub direction: Vec<u32>,
-    /// Octahedral normal of where it landed, on the side it came from.
-    pub normal: Vec<u32>,
+    /// Unit normal of where it landed, on the side it came from; not packed, since every candidate of a search is asked.
+    pub normal: Vec<Vec3>,
 }
 
 /// Photons ready for density estimation: a tree with the columns that the estimate reads.
@@ -105,7 +105,7 @@ impl PhotonMap {
         let accept = |slot: u32, offset: Vec3, dist_sq: f32| {
             let height = offset.dot(normal);
             height * height <= MAX_ELEVATION * MAX_ELEVATION * dist_sq + 4.0 * error_sq
-                && unpack_direction(self.columns.normal[slot as usize]).dot(normal) >= MIN_NORMAL_COSINE
+                && self.columns.normal[slot as usize].dot(normal) >= MIN_NORMAL_COSINE
         };
         let found = self
             .tree
@@ -116,10 +116,18 @@ impl PhotonMap {
             return Rgb::BLACK;
         }
         let mut sum = Rgb::BLACK;
-        for photon in found.inside() {
-            let slot = photon.slot as usize;
-            let value = vertex.eval_diffuse_flux(unpack_direction(self.columns.direction[slot]));
-            sum += self.columns.flux[slot] * value * settings.filter.weight(photon.dist_sq, radius_sq);
+        if let Some(value) = vertex.lambertian() {
+            // The same from every direction; the normals have made sure of the side.
+            for photon in found.inside() {
+                sum += self.columns.flux[photon.slot as usize] * settings.filter.weight(photon.dist_sq, radius_sq);
+            }
+            sum *= value;
+        } else {
+            for photon in found.inside() {
+                let slot = photon.slot as usize;
+                let value = vertex.eval_diffuse_flux(unpack_direction(self.columns.direction[slot]));
+                sum += self.columns.flux[slot] * value * settings.filter.weight(photon.dist_sq, radius_sq);
+            }
         }
         sum * (1.0 / (PI * radius_sq))
     }
@@ -130,6 +138,7 @@ impl PhotonMap {
         let c = &self.columns;
         self.tree.memory_bytes()
             + c.flux.capacity() * size_of::<Rgb>()
-            + (c.direction.capacity() + c.normal.capacity()) * size_of::<u32>()
+            + c.direction.capacity() * size_of::<u32>()
+            + c.normal.capacity() * size_of::<Vec3>()
     }
 }

@@ -1,7 +1,7 @@
 use crate::light::{Light, LightTable};
 use crate::projection::TargetSphere;
 use glam::Vec3;
-use radiometry::{Frame, Rgb, SampleStream, warp};
+use radiometry::{Distribution, Frame, Rgb, SampleStream, StageKey, warp};
 use spatial::{Ray, spawn_origin};
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 
@@ -23,10 +23,15 @@ pub struct EmittedPhoton {
 ///
 /// Source of the idea: projection maps, Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, section 5.
 /// Differs: spheres instead of a raster, and a defensive share, which keeps the estimate unbiased.
+///
+/// Aimed photons choose their light by the flux that it sends to the targets, not by its power: a sky of a hundred watts
+/// of which a milliwatt meets the ring does not drown the lamp beside it.
 pub struct EmissionSampler<'a> {
     lights: &'a LightTable,
     targets: &'a [TargetSphere],
     uniform_share: f32,
+    /// Chooses the light of an aimed photon.
+    aimed_choice: Distribution,
 }
 
 mod dimension {
@@ -45,13 +50,15 @@ impl<'a> EmissionSampler<'a> {
             lights,
             targets: &[],
             uniform_share: 1.0,
+            aimed_choice: Distribution::default(),
         }
     }
 
     /// Aims at `targets`, but for the share `uniform_share` in (0, 1]; without targets everything is uniform.
     #[must_use]
     pub fn aimed(lights: &'a LightTable, targets: &'a [TargetSphere], uniform_share: f32) -> Self {
-        let uniform_share = if targets.is_empty() {
+        let aimed_choice = Distribution::new(lights.iter().map(|light| flux_to_targets(light, targets)));
+        let uniform_share = if aimed_choice.is_empty() {
             1.0
         } else {
             uniform_share.clamp(1e-3, 1.0)
@@ -60,6 +67,7 @@ impl<'a> EmissionSampler<'a> {
             lights,
             targets,
             uniform_share,
+            aimed_choice,
         }
     }
 
@@ -68,15 +76,27 @@ impl<'a> EmissionSampler<'a> {
     /// `None` when this draw carries no flux; it counts as emitted all the same.
     #[must_use]
     pub fn emit(&self, stream: &SampleStream) -> Option<EmittedPhoton> {
-        let (light, probability) = self.lights.choose(stream.draw_1d(0, dimension::LIGHT))?;
-        let share = stream.draw_1d(0, dimension::SHARE);
-        let photon = match light {
+        let u_light = stream.draw_1d(0, dimension::LIGHT);
+        let aims = stream.draw_1d(0, dimension::SHARE) >= self.uniform_share;
+        let choice = if aims { &self.aimed_choice } else { self.lights.choice() };
+        let (row, _, u_cone) = choice.sample(u_light)?;
+        // Densities with which the light is chosen to shine as it does, and to aim.
+        let uniform = self.uniform_share * self.lights.choice().probability(row);
+        let aimed = (1.0 - self.uniform_share) * self.aimed_choice.probability(row);
+        let draw = Draw {
+            uniform,
+            aimed,
+            aims,
+            u_cone,
+            stream,
+        };
+        let photon = match self.lights.light(row) {
             Light::Point { position, intensity } => {
                 let cones = Cones::seen_from(self.targets, *position, None);
-                let (direction, pdf) = self.direction(&cones, share, stream, None);
+                let (direction, pdf) = draw.direction(&cones, None)?;
                 EmittedPhoton {
                     ray: Ray::new(*position, direction),
-                    flux: *intensity * (1.0 / (probability * pdf)),
+                    flux: *intensity * (1.0 / pdf),
                 }
             }
             Light::Area {
@@ -91,7 +111,7 @@ impl<'a> EmissionSampler<'a> {
                 };
                 let normal = surface.ng * side;
                 let cones = Cones::seen_from(self.targets, surface.p, Some(normal));
-                let (direction, pdf) = self.direction(&cones, share, stream, Some(normal));
+                let (direction, pdf) = draw.direction(&cones, Some(normal))?;
                 let cos = direction.dot(normal);
                 if cos <= 0.0 || surface.pdf_area <= 0.0 {
                     return None;
@@ -99,13 +119,13 @@ impl<'a> EmissionSampler<'a> {
                 let origin = spawn_origin(surface.p, surface.error, surface.ng, direction);
                 EmittedPhoton {
                     ray: Ray::new(origin, direction),
-                    flux: *radiance * (cos * sides / (probability * surface.pdf_area * pdf)),
+                    flux: *radiance * (cos * sides / (surface.pdf_area * pdf)),
                 }
             }
             Light::Environment { radiance } => {
                 let direction = -warp::sample_uniform_sphere(stream.draw_2d(0, dimension::POSITION));
-                let (origin, pdf) = self.origin_at_infinity(direction, share, stream)?;
-                let flux = *radiance * (1.0 / (probability * warp::PDF_UNIFORM_SPHERE * pdf));
+                let (origin, pdf) = self.origin_at_infinity(direction, &draw)?;
+                let flux = *radiance * (1.0 / (warp::PDF_UNIFORM_SPHERE * pdf));
                 EmittedPhoton {
                     ray: Ray::new(origin, direction),
                     flux,
@@ -115,55 +135,27 @@ impl<'a> EmissionSampler<'a> {
         photon.flux.is_finite().then_some(photon)
     }
 
-    /// A direction and its density per solid angle; `normal` for surfaces that shine by Lambert's law.
-    fn direction(&self, cones: &Cones, share: f32, stream: &SampleStream, normal: Option<Vec3>) -> (Vec3, f32) {
-        let u = stream.draw_2d(0, dimension::DIRECTION);
-        // Where no target is in view all the emission is uniform.
-        let uniform_share = if cones.solid_angle > 0.0 {
-            self.uniform_share
-        } else {
-            1.0
-        };
-        let direction = if share < uniform_share {
-            match normal {
-                Some(n) => Frame::from_normal(n).world_from_local(warp::sample_cosine_hemisphere(u)),
-                None => warp::sample_uniform_sphere(u),
-            }
-        } else {
-            cones.sample((share - uniform_share) / (1.0 - uniform_share), u)
-        };
-        let uniform_pdf = match normal {
-            Some(n) => warp::pdf_cosine_hemisphere(n.dot(direction)),
-            None => warp::PDF_UNIFORM_SPHERE,
-        };
-        let aimed_pdf = if uniform_share < 1.0 { cones.pdf(direction) } else { 0.0 };
-        (
-            direction,
-            uniform_share * uniform_pdf + (1.0 - uniform_share) * aimed_pdf,
-        )
-    }
-
-    /// A point outside the scene from where `direction` leads through it, and its density per area across.
-    fn origin_at_infinity(&self, direction: Vec3, share: f32, stream: &SampleStream) -> Option<(Vec3, f32)> {
+    /// A point outside the scene from where `direction` leads through it, and the density of light and point, per area
+    /// across.
+    fn origin_at_infinity(&self, direction: Vec3, draw: &Draw<'_>) -> Option<(Vec3, f32)> {
         let (centre, radius) = self.lights.bounding_sphere();
         if radius <= 0.0 {
             return None;
         }
         let frame = Frame::from_normal(direction);
-        let disc = warp::sample_unit_disc(stream.draw_2d(0, dimension::DIRECTION));
+        let disc = warp::sample_unit_disc(draw.stream.draw_2d(0, dimension::DIRECTION));
         let across = |from: Vec3, r: f32| from + frame.x * (disc.x * r) + frame.y * (disc.y * r);
         let discs: f32 = self.targets.iter().map(|t| t.radius * t.radius).sum();
-        let uniform_share = if discs > 0.0 { self.uniform_share } else { 1.0 };
-        let through = if share < uniform_share {
-            across(centre, radius)
-        } else {
-            let mut rest = (share - uniform_share) / (1.0 - uniform_share) * discs;
+        let through = if draw.aims {
+            let mut rest = draw.u_cone * discs;
             let chosen = self.targets.iter().find(|t| {
                 rest -= t.radius * t.radius;
                 rest <= 0.0
             });
             let target = chosen.or(self.targets.last())?;
             across(target.centre, target.radius)
+        } else {
+            across(centre, radius)
         };
         let distance_sq_across = |c: Vec3| (through - c).reject_from_normalized(direction).length_squared();
         let in_scene = distance_sq_across(centre) <= radius * radius;
@@ -173,16 +165,77 @@ impl<'a> EmissionSampler<'a> {
             .filter(|t| distance_sq_across(t.centre) <= t.radius * t.radius)
             .count();
         let uniform_pdf = if in_scene { FRAC_1_PI / (radius * radius) } else { 0.0 };
-        let aimed_pdf = if uniform_share < 1.0 {
+        let aimed_pdf = if discs > 0.0 {
             covering as f32 / (PI * discs)
         } else {
             0.0
         };
-        let pdf = uniform_share * uniform_pdf + (1.0 - uniform_share) * aimed_pdf;
+        let pdf = draw.uniform * uniform_pdf + draw.aimed * aimed_pdf;
         // Back along the ray to well outside the sphere around everything.
         let back = (through - centre).dot(direction) + 2.0 * radius;
         (pdf > 0.0).then_some((through - direction * back, pdf))
     }
+}
+
+/// One choice of a light, and of whether to aim.
+struct Draw<'s> {
+    /// Probability of this light without aim.
+    uniform: f32,
+    /// Probability of this light with aim.
+    aimed: f32,
+    aims: bool,
+    /// What is left of the number that chose the light.
+    u_cone: f32,
+    stream: &'s SampleStream,
+}
+
+impl Draw<'_> {
+    /// A direction, and the density of light and direction, per solid angle; `normal` for surfaces that shine by
+    /// Lambert's law. `None` when it was to be aimed and no target is in view from here.
+    fn direction(&self, cones: &Cones, normal: Option<Vec3>) -> Option<(Vec3, f32)> {
+        let u = self.stream.draw_2d(0, dimension::DIRECTION);
+        let direction = match (self.aims, normal) {
+            (true, _) => cones.sample(self.u_cone, u)?,
+            (false, Some(n)) => Frame::from_normal(n).world_from_local(warp::sample_cosine_hemisphere(u)),
+            (false, None) => warp::sample_uniform_sphere(u),
+        };
+        let uniform_pdf = match normal {
+            Some(n) => warp::pdf_cosine_hemisphere(n.dot(direction)),
+            None => warp::PDF_UNIFORM_SPHERE,
+        };
+        let pdf = self.uniform * uniform_pdf + self.aimed * cones.pdf(direction);
+        (pdf > 0.0).then_some((direction, pdf))
+    }
+}
+
+/// Roughly the flux that a light sends to the targets, in W; zero only when it is exactly zero.
+fn flux_to_targets(light: &Light, targets: &[TargetSphere]) -> f64 {
+    /// Points of an area light that are asked.
+    const PROBES: u32 = 16;
+    let flux = match light {
+        Light::Point { position, intensity } => {
+            intensity.mean() * Cones::seen_from(targets, *position, None).solid_angle
+        }
+        Light::Area {
+            sampler,
+            radiance,
+            two_sided,
+        } => {
+            let key = StageKey::new("flux to targets");
+            let probe = |i: u32| {
+                let surface = sampler.sample_area(SampleStream::new(0, key, 0, i).draw_2d(0, 0));
+                let cones = |n: Vec3| Cones::seen_from(targets, surface.p, Some(n)).cosine_sum(n);
+                cones(surface.ng) + if *two_sided { cones(-surface.ng) } else { 0.0 }
+            };
+            let mean = (0..PROBES).map(probe).sum::<f32>() / PROBES as f32;
+            radiance.mean() * sampler.area() as f32 * mean
+        }
+        Light::Environment { radiance } => {
+            let discs: f32 = targets.iter().map(|t| t.radius * t.radius).sum();
+            radiance.mean() * 4.0 * PI * PI * discs
+        }
+    };
+    f64::from(flux)
 }
 
 /// The cones that targets subtend from one point, all that are not wholly behind its surface.
@@ -220,16 +273,24 @@ impl Cones {
         &self.cones[..self.count]
     }
 
-    fn sample(&self, u_cone: f32, u: glam::Vec2) -> Vec3 {
+    fn sample(&self, u_cone: f32, u: glam::Vec2) -> Option<Vec3> {
         let mut rest = u_cone * self.solid_angle;
         let chosen = self.all().iter().find(|(_, one_minus_cos)| {
             rest -= TAU * one_minus_cos;
             rest <= 0.0
         });
-        let (axis, one_minus_cos) = *chosen.or(self.all().last()).unwrap_or(&(Vec3::Z, 2.0));
-        Frame::from_normal(axis)
-            .world_from_local(warp::sample_uniform_cone(u, one_minus_cos))
-            .normalize()
+        let (axis, one_minus_cos) = *chosen.or(self.all().last())?;
+        let local = warp::sample_uniform_cone(u, one_minus_cos);
+        Some(Frame::from_normal(axis).world_from_local(local).normalize())
+    }
+
+    /// Solid angles weighted with the cosine of their axes, but never with less than a twentieth: a cone whose axis is
+    /// below the horizon can still reach above it.
+    fn cosine_sum(&self, normal: Vec3) -> f32 {
+        self.all()
+            .iter()
+            .map(|(axis, one_minus_cos)| TAU * one_minus_cos * axis.dot(normal).max(0.05))
+            .sum()
     }
 
     /// Density of [`Cones::sample`]: cones that hold the direction, over the solid angle of all of them.
@@ -238,6 +299,10 @@ impl Cones {
             // 1 − cos of a small angle through its chord: |a − b|² = 2 (1 − cos).
             0.5 * (direction - *axis).length_squared() <= *one_minus_cos
         });
-        covering.count() as f32 / self.solid_angle
+        if self.count == 0 {
+            0.0
+        } else {
+            covering.count() as f32 / self.solid_angle
+        }
     }
 }

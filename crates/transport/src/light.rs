@@ -278,10 +278,19 @@ impl LightTable {
         }
     }
 
-    /// Chooses the light that a photon leaves, in proportion to power: the light and its probability.
-    pub(crate) fn choose(&self, u: f32) -> Option<(&Light, f32)> {
-        let (row, probability, _) = self.choice.sample(u)?;
-        Some((&self.lights[row], probability))
+    /// Chooses a light in proportion to power.
+    pub(crate) fn choice(&self) -> &Distribution {
+        &self.choice
+    }
+
+    /// The light in a row.
+    pub(crate) fn light(&self, row: usize) -> &Light {
+        &self.lights[row]
+    }
+
+    /// All lights, by row.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Light> {
+        self.lights.iter()
     }
 
     /// Centre and radius of the sphere around all geometry.

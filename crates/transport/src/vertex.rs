@@ -75,6 +75,16 @@ impl<'a> Vertex<'a> {
         self.bsdf.eval(self.wo_local, wi_local, Transport::Radiance).diffuse * (1.0 / cos)
     }
 
+    /// The value of a Lambertian reflection, albedo/π, where the surface is one and flat; `None` elsewhere.
+    #[inline]
+    #[must_use]
+    pub fn lambertian(&self) -> Option<Rgb> {
+        match &self.bsdf {
+            Bsdf::Diffuse(diffuse) if self.cos_normals >= FLAT => Some(diffuse.albedo() * std::f32::consts::FRAC_1_PI),
+            _ => None,
+        }
+    }
+
     /// Chooses a direction to go on in, by importance of the scattering function.
     ///
     /// Returns the sample with its direction in world space; `None` ends the path.

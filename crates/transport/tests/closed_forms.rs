@@ -291,7 +291,7 @@ fn uniform_field(n: u32, seed: u64) -> PhotonMap {
     let columns = PhotonColumns {
         flux: vec![Rgb::splat(1.0 / n as f32); n as usize],
         direction: vec![up; n as usize],
-        normal: vec![up; n as usize],
+        normal: vec![Vec3::Z; n as usize],
     };
     PhotonMap { tree, columns }
 }

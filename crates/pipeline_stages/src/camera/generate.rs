@@ -14,7 +14,9 @@ pub(super) fn plan_waves(
     mut clock: ResMut<RenderClock>,
     report: Res<Report>,
 ) {
-    let (Some(settings), false) = (settings, report.failed()) else { return };
+    let (Some(settings), false) = (settings, report.failed()) else {
+        return;
+    };
     let size = settings.crop_max - settings.crop_min;
     let pixels = size.x as usize * size.y as usize;
     // A power of two of samples keeps each pixel's share of a pass an aligned run of its sequence.
@@ -77,7 +79,10 @@ pub(super) fn generate_rays(
     record_items(live);
 }
 
-#[expect(clippy::too_many_arguments, reason = "three streams of one batch, and what fills them")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "three streams of one batch, and what fills them"
+)]
 fn fill_batch(
     pixels: std::ops::Range<usize>,
     samples_end: u32,
@@ -102,7 +107,10 @@ fn fill_batch(
             batch.pixel_of_slot.push((storage - pixels.start) as u32);
             batch.film_position.push(position);
             rays.0.push(camera.0.ray(position));
-            paths.0.push(Path::from_eye(slot, SampleStream::new(settings.seed, PATH_STAGE, domain, sample)));
+            paths.0.push(Path::from_eye(
+                slot,
+                SampleStream::new(settings.seed, PATH_STAGE, domain, sample),
+            ));
         }
     }
 }

@@ -49,14 +49,19 @@ pub struct CameraPlugin;
 
 impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Prepare, generate::plan_waves.in_set(PrepareSystems::PrepareStages).in_set(CameraSystems))
-            .add_systems(
-                RenderPass,
-                (
-                    generate::generate_rays.in_set(RenderSystems::GenerateRays),
-                    perturb_film::sample_filter.in_set(PerturbSystems::PerturbFilm),
-                )
-                    .in_set(CameraSystems),
-            );
+        app.add_systems(
+            Prepare,
+            generate::plan_waves
+                .in_set(PrepareSystems::PrepareStages)
+                .in_set(CameraSystems),
+        )
+        .add_systems(
+            RenderPass,
+            (
+                generate::generate_rays.in_set(RenderSystems::GenerateRays),
+                perturb_film::sample_filter.in_set(PerturbSystems::PerturbFilm),
+            )
+                .in_set(CameraSystems),
+        );
     }
 }

@@ -14,7 +14,10 @@ pub(super) struct SampleCounters {
 impl FromWorld for SampleCounters {
     fn from_world(world: &mut World) -> Self {
         let mut counters = world.resource_mut::<Counters>();
-        Self { samples: counters.counter("image/samples"), rejected: counters.counter("image/rejected samples") }
+        Self {
+            samples: counters.counter("image/samples"),
+            rejected: counters.counter("image/rejected samples"),
+        }
     }
 }
 
@@ -30,7 +33,9 @@ pub(super) fn accumulate_batches(
         world.resource_scope(|world, terms: Mut<Contributions>| {
             let mut batches: Vec<_> = batches.iter_mut(world).collect();
             batches.sort_unstable_by_key(first_pixel);
-            let Some(first) = batches.first().map(first_pixel) else { return };
+            let Some(first) = batches.first().map(first_pixel) else {
+                return;
+            };
             let span_len = match batches.get(1) {
                 Some(second) => first_pixel(second) - first,
                 None => film.0.pixel_count() - first,
@@ -40,7 +45,9 @@ pub(super) fn accumulate_batches(
             let samples = spans
                 .into_par_iter()
                 .zip(batches)
-                .map_init(Vec::new, |layers, (mut span, mut batch)| add_batch(&mut batch, &mut span, &terms, counters, layers))
+                .map_init(Vec::new, |layers, (mut span, mut batch)| {
+                    add_batch(&mut batch, &mut span, &terms, counters, layers)
+                })
                 .sum();
             counters.samples.add(samples as u64);
             record_items(samples);
@@ -69,7 +76,9 @@ fn add_batch(
             *sum += value;
         }
     });
-    let (Some(batch), Some(first_hits)) = (batch.get::<FilmBatch>(), batch.get::<FirstHits>()) else { return 0 };
+    let (Some(batch), Some(first_hits)) = (batch.get::<FilmBatch>(), batch.get::<FirstHits>()) else {
+        return 0;
+    };
     for ((radiance, pixel), hit) in layers.iter().zip(&batch.pixel_of_slot).zip(&first_hits.0) {
         let (albedo, normal) = (hit.albedo, hit.normal);
         let aux = [albedo.r, albedo.g, albedo.b, normal.x, normal.y, normal.z, hit.depth];

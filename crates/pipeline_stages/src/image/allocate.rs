@@ -20,9 +20,11 @@ pub(super) fn checkpoint_path(request: &RenderRequest) -> Option<PathBuf> {
 pub(super) fn checkpoint_key(scene: &ComposedScene, settings: &RenderSettings) -> [u8; 32] {
     let mut key = scene.0.hash;
     scene_format::mix_hash(&mut key, "seed", &settings.seed.to_le_bytes());
-    for (label, value) in
-        [("resolution", settings.resolution), ("crop min", settings.crop_min), ("crop max", settings.crop_max)]
-    {
+    for (label, value) in [
+        ("resolution", settings.resolution),
+        ("crop min", settings.crop_min),
+        ("crop max", settings.crop_max),
+    ] {
         scene_format::mix_hash(&mut key, label, &value.x.to_le_bytes());
         scene_format::mix_hash(&mut key, label, &value.y.to_le_bytes());
     }
@@ -33,7 +35,11 @@ pub(super) fn checkpoint_key(scene: &ComposedScene, settings: &RenderSettings) -
 pub(super) fn layout() -> ChannelLayout {
     ChannelLayout {
         layers: Layer::ALL[..LAYERS].iter().map(|layer| layer.name().into()).collect(),
-        aux: vec![AuxGroup::rgb("albedo"), AuxGroup::xyz("normal"), AuxGroup::depth("depth")],
+        aux: vec![
+            AuxGroup::rgb("albedo"),
+            AuxGroup::xyz("normal"),
+            AuxGroup::depth("depth"),
+        ],
         variance: false,
     }
 }
@@ -46,9 +52,14 @@ pub(super) fn allocate_film(
     scene: Option<Res<ComposedScene>>,
     mut report: ResMut<Report>,
 ) {
-    let (Some(settings), Some(scene), false) = (settings, scene, report.failed()) else { return };
-    let window =
-        FilmWindow { resolution: settings.resolution, crop_min: settings.crop_min, crop_max: settings.crop_max };
+    let (Some(settings), Some(scene), false) = (settings, scene, report.failed()) else {
+        return;
+    };
+    let window = FilmWindow {
+        resolution: settings.resolution,
+        crop_min: settings.crop_min,
+        crop_max: settings.crop_max,
+    };
     let mut resumed = None;
     if let (true, Some(path)) = (request.resume, checkpoint_path(&request)) {
         match File::open(&path) {
@@ -70,7 +81,10 @@ pub(super) fn allocate_film(
                 path.display()
             )),
             Err(error) => {
-                report.fail(format!("error[bad-checkpoint]: cannot read {}: {error}", path.display()));
+                report.fail(format!(
+                    "error[bad-checkpoint]: cannot read {}: {error}",
+                    path.display()
+                ));
                 return;
             }
         }

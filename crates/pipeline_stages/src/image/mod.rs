@@ -34,22 +34,32 @@ pub struct ImagePlugin;
 
 impl Plugin for ImagePlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Prepare, allocate::allocate_film.in_set(PrepareSystems::PrepareStages).in_set(ImageSystems))
-            .add_systems(
-                Bounce,
-                first_hits::record_first_hits
-                    .in_set(BounceSystems::Shade)
-                    .in_set(ImageSystems)
-                    .run_if(|clock: bevy_ecs::system::Res<RenderClock>| clock.bounce == 0),
+        app.add_systems(
+            Prepare,
+            allocate::allocate_film
+                .in_set(PrepareSystems::PrepareStages)
+                .in_set(ImageSystems),
+        )
+        .add_systems(
+            Bounce,
+            first_hits::record_first_hits
+                .in_set(BounceSystems::Shade)
+                .in_set(ImageSystems)
+                .run_if(|clock: bevy_ecs::system::Res<RenderClock>| clock.bounce == 0),
+        )
+        .add_systems(
+            RenderPass,
+            accumulate::accumulate_batches
+                .in_set(RenderSystems::Accumulate)
+                .in_set(ImageSystems),
+        )
+        .add_systems(
+            Finish,
+            (
+                resolve::resolve_film.in_set(FinishSystems::Resolve),
+                write::write_images.in_set(FinishSystems::Write),
             )
-            .add_systems(RenderPass, accumulate::accumulate_batches.in_set(RenderSystems::Accumulate).in_set(ImageSystems))
-            .add_systems(
-                Finish,
-                (
-                    resolve::resolve_film.in_set(FinishSystems::Resolve),
-                    write::write_images.in_set(FinishSystems::Write),
-                )
-                    .in_set(ImageSystems),
-            );
+                .in_set(ImageSystems),
+        );
     }
 }

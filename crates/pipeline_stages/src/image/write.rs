@@ -21,7 +21,10 @@ pub(super) fn write_images(
         text
     });
     // Samples of the pixel that has the fewest: what the whole image has for sure.
-    let samples = (0..film.0.pixel_count()).map(|i| film.0.sample_count(i)).min().unwrap_or(0);
+    let samples = (0..film.0.pixel_count())
+        .map(|i| film.0.sample_count(i))
+        .min()
+        .unwrap_or(0);
     let metadata = Metadata {
         scene_hash: hash,
         seed: settings.seed,
@@ -42,7 +45,9 @@ pub(super) fn write_images(
             report.fail(format!("error[write]: {error}"));
         }
     }
-    let Some(checkpoint) = checkpoint_path(&request) else { return };
+    let Some(checkpoint) = checkpoint_path(&request) else {
+        return;
+    };
     if clock.waves_done < clock.waves_total {
         let key = checkpoint_key(&scene, &settings);
         if let Err(error) = film::atomic_write(&checkpoint, |out| film.0.save(out, &key)) {
@@ -51,7 +56,10 @@ pub(super) fn write_images(
     } else if request.resume && checkpoint.exists() {
         // The render is whole: what it was resumed from is of no use any more.
         if let Err(error) = std::fs::remove_file(&checkpoint) {
-            report.warn(format!("warning[checkpoint]: cannot remove {}: {error}", checkpoint.display()));
+            report.warn(format!(
+                "warning[checkpoint]: cannot remove {}: {error}",
+                checkpoint.display()
+            ));
         }
     }
 }

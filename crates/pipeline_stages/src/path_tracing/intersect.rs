@@ -22,7 +22,11 @@ pub(super) fn intersect_rays(
     let rays = batches
         .par_iter_mut()
         .map(|(rays, paths, hits)| {
-            let traced = rays.0.iter().zip(&mut paths.0).map(|(ray, path)| transport::arrive(&scene.0, path, ray));
+            let traced = rays
+                .0
+                .iter()
+                .zip(&mut paths.0)
+                .map(|(ray, path)| transport::arrive(&scene.0, path, ray));
             hits.0.clear();
             hits.0.extend(traced);
             rays.0.len()

@@ -3,6 +3,7 @@ use bevy_ecs::prelude::*;
 use glam::Vec3;
 use pipeline_core::{Report, record_items};
 use pipeline_data::{CausticPhoton, Photon};
+use radiometry::unpack_direction;
 use spatial::PhotonTree;
 use transport::{DensitySettings, PhotonColumns, PhotonMap};
 
@@ -39,9 +40,12 @@ pub(super) fn build_photon_map(
             let columns = PhotonColumns {
                 flux: rows().map(|p| p.flux).collect(),
                 direction: rows().map(|p| p.direction).collect(),
-                normal: rows().map(|p| p.normal).collect(),
+                normal: rows().map(|p| unpack_direction(p.normal)).collect(),
             };
-            commands.insert_resource(CausticMap { map: PhotonMap { tree, columns }, density: run.density });
+            commands.insert_resource(CausticMap {
+                map: PhotonMap { tree, columns },
+                density: run.density,
+            });
         }
         Err(error) => report.warn(format!("warning[photon-map]: there is no caustic photon map: {error}")),
     }

@@ -44,7 +44,9 @@ pub(super) fn gather_caustics(
             let mut lookups = 0;
             for ((ray, path), hit) in rays.0.iter().zip(&paths.0).zip(&hits.0) {
                 let Some(hit) = hit else { continue };
-                let Some(layer) = settings.methods.caustic_map_layer(path.class) else { continue };
+                let Some(layer) = settings.methods.caustic_map_layer(path.class) else {
+                    continue;
+                };
                 let vertex = Vertex::new(&scene.0, hit, -ray.direction);
                 if path.depth >= settings.methods.max_depth || !vertex.bsdf.has_diffuse() {
                     continue;

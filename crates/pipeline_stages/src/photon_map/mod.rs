@@ -69,7 +69,10 @@ struct PhotonRun {
 impl PhotonRun {
     /// True when enough photons have landed, or too many were emitted for more to be worth waiting for.
     fn has_enough(&self) -> bool {
-        let most = self.wanted.saturating_mul(MAX_EMITTED_RATIO).min(u64::from(u32::MAX - BATCH_PATHS));
+        let most = self
+            .wanted
+            .saturating_mul(MAX_EMITTED_RATIO)
+            .min(u64::from(u32::MAX - BATCH_PATHS));
         self.landed.len() as u64 >= self.wanted || u64::from(self.emitted) >= most
     }
 }
@@ -85,24 +88,33 @@ impl Plugin for PhotonMapPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<CausticPhotonMap>();
         Contributions::register::<CausticContribution>(app);
-        app.add_systems(Prepare, plan::plan_photons.in_set(PrepareSystems::PrepareStages).in_set(PhotonMapSystems))
-            .add_systems(
-                PhotonPass,
-                (
-                    emit::emit_photons.in_set(PhotonSystems::EmitPhotons),
-                    trace::trace_photons.in_set(PhotonSystems::TracePhotons),
-                    store::store_photons.in_set(PhotonSystems::StorePhotons).run_if(emission_is_over),
-                    build::build_photon_map.in_set(PhotonSystems::BuildPhotonMaps).run_if(emission_is_over),
-                )
-                    .in_set(PhotonMapSystems)
-                    .run_if(resource_exists::<PhotonRun>),
+        app.add_systems(
+            Prepare,
+            plan::plan_photons
+                .in_set(PrepareSystems::PrepareStages)
+                .in_set(PhotonMapSystems),
+        )
+        .add_systems(
+            PhotonPass,
+            (
+                emit::emit_photons.in_set(PhotonSystems::EmitPhotons),
+                trace::trace_photons.in_set(PhotonSystems::TracePhotons),
+                store::store_photons
+                    .in_set(PhotonSystems::StorePhotons)
+                    .run_if(emission_is_over),
+                build::build_photon_map
+                    .in_set(PhotonSystems::BuildPhotonMaps)
+                    .run_if(emission_is_over),
             )
-            .add_systems(
-                Bounce,
-                gather::gather_caustics
-                    .in_set(BounceSystems::LookUp)
-                    .in_set(PhotonMapSystems)
-                    .run_if(resource_exists::<CausticMap>),
-            );
+                .in_set(PhotonMapSystems)
+                .run_if(resource_exists::<PhotonRun>),
+        )
+        .add_systems(
+            Bounce,
+            gather::gather_caustics
+                .in_set(BounceSystems::LookUp)
+                .in_set(PhotonMapSystems)
+                .run_if(resource_exists::<CausticMap>),
+        );
     }
 }

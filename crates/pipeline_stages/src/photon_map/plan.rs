@@ -24,10 +24,14 @@ pub(super) fn plan_photons(
     mut clock: ResMut<RenderClock>,
     mut report: ResMut<Report>,
 ) {
-    let (Some(settings), Some(scene), Some(composed)) = (settings, transport_scene, composed) else { return };
+    let (Some(settings), Some(scene), Some(composed)) = (settings, transport_scene, composed) else {
+        return;
+    };
     let mut map = None;
     for (prim, written) in &prims {
-        let place = composed.0.prims[prim.0 as usize].component("CausticPhotonMap").map(|c| c.place);
+        let place = composed.0.prims[prim.0 as usize]
+            .component("CausticPhotonMap")
+            .map(|c| c.place);
         let mut warn = |text: &str| {
             let mut diagnostic = Diagnostic::warning("unused-settings", text);
             if let Some(place) = place {
@@ -55,10 +59,17 @@ pub(super) fn plan_photons(
     if bytes > MAX_BYTES {
         let mut diagnostic = Diagnostic::error(
             "too-many-photons",
-            format!("{} photons would take about {} GiB of memory; at most {} GiB are allowed", map.photons, bytes >> 30, MAX_BYTES >> 30),
+            format!(
+                "{} photons would take about {} GiB of memory; at most {} GiB are allowed",
+                map.photons,
+                bytes >> 30,
+                MAX_BYTES >> 30
+            ),
         )
         .note(format!("at most {} photons", MAX_BYTES / BYTES_PER_PHOTON));
-        let field = composed.0.prims[settings.render_prim as usize].component("CausticPhotonMap").and_then(|c| c.field("photons"));
+        let field = composed.0.prims[settings.render_prim as usize]
+            .component("CausticPhotonMap")
+            .and_then(|c| c.field("photons"));
         if let Some(field) = field {
             diagnostic = diagnostic.at(field.place);
         }
@@ -73,7 +84,11 @@ pub(super) fn plan_photons(
         batch: Vec::new(),
         landed: Vec::new(),
         is_over: false,
-        density: DensitySettings { nearest: map.nearest as usize, max_radius, filter: map.filter.into() },
+        density: DensitySettings {
+            nearest: map.nearest as usize,
+            max_radius,
+            filter: map.filter.into(),
+        },
     });
     clock.photons_pending += 1;
     progress.start("photons", "photons", u64::from(map.photons));

@@ -26,7 +26,12 @@ pub struct CausticPhotonMap {
 
 impl Default for CausticPhotonMap {
     fn default() -> Self {
-        Self { photons: 100_000, nearest: 50, max_radius: None, filter: PhotonFilter::Cone }
+        Self {
+            photons: 100_000,
+            nearest: 50,
+            max_radius: None,
+            filter: PhotonFilter::Cone,
+        }
     }
 }
 

@@ -32,7 +32,10 @@ pub(super) fn store_photons(
     record_items(photons.len());
     let overwritten = store_in_pool(&photons, &mut pool);
     if overwritten < photons.len() {
-        let new: Vec<_> = photons[overwritten..].iter().map(|photon| (*photon, CausticPhoton)).collect();
+        let new: Vec<_> = photons[overwritten..]
+            .iter()
+            .map(|photon| (*photon, CausticPhoton))
+            .collect();
         commands.spawn_batch(new);
     }
     for entity in entities.iter().skip(photons.len()) {

@@ -36,9 +36,17 @@ pub(super) fn trace_photons(
             let Some(photon) = photon else { continue };
             let path = first + (task * TASK_PATHS + i) as u32;
             let stream = SampleStream::new(settings.seed, PHOTON_STAGE, 0, path);
-            trace_photon(&scene.0, photon, MapKinds::CAUSTIC, max_depth, path, &stream, |deposit| {
-                landed.push(Photon::from(deposit));
-            });
+            trace_photon(
+                &scene.0,
+                photon,
+                MapKinds::CAUSTIC,
+                max_depth,
+                path,
+                &stream,
+                |deposit| {
+                    landed.push(Photon::from(deposit));
+                },
+            );
         }
         landed
     };
