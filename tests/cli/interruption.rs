@@ -8,7 +8,7 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// Enough for a second or more, in many waves.
-const OPTIONS: &str = "--samples 600 --resolution 96x96 --set /Render.CausticPhotonMap.photons=20000";
+const OPTIONS: &str = "--samples 600 --resolution 64x64 --set /Render.CausticPhotonMap.photons=20000";
 /// Longer than any of these runs may take on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(120);
 

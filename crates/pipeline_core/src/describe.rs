@@ -81,7 +81,7 @@ fn sets<S: SystemSet + Debug + Clone>(sets: &[S]) -> Vec<NamedSet> {
 
 fn describe(
     app: &mut App,
-    label: impl ScheduleLabel + Debug + Clone,
+    label: impl ScheduleLabel + Clone,
     sets: &[NamedSet],
 ) -> Result<ScheduleDescription, String> {
     let name = format!("{label:?}");

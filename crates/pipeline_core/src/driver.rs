@@ -77,7 +77,7 @@ pub fn render(app: &mut App) -> Outcome {
         let done = clock.waves_done;
         progress.set_done(done);
         let out_of_time =
-            done >= per_pass && done % per_pass == 0 && limit.is_some_and(|limit| started.elapsed() >= limit);
+            done >= per_pass && done.is_multiple_of(per_pass) && limit.is_some_and(|limit| started.elapsed() >= limit);
         if done >= total || out_of_time {
             break;
         }
