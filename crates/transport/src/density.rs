@@ -71,6 +71,20 @@ pub struct PhotonMap {
     pub columns: PhotonColumns,
 }
 
+/// Memory that estimates reuse, and what the last one found; one a thread.
+///
+/// The k-th photon is nowhere further than from a neighbouring point plus the way there, so each search begins with the
+/// radius of the last one. That changes its cost and never its result.
+#[derive(Clone, Debug, Default)]
+pub struct DensityScratch {
+    nearest: NearestScratch,
+    /// Where the last estimate was, and its radius; only when the k-th photon was in reach.
+    last: Option<(Vec3, f32)>,
+}
+
+/// Room for the rounding of a sum of two distances.
+const ROUNDED_UP: f32 = 1.000_01;
+
 /// Photons further off the plane of the hit than this share of their distance belong to another surface.
 const MAX_ELEVATION: f32 = 0.3;
 /// Photons whose surface normal has a smaller cosine to that of the hit belong to another surface.
@@ -93,7 +107,7 @@ impl PhotonMap {
         &self,
         vertex: &Vertex<'_>,
         settings: &DensitySettings,
-        scratch: &mut NearestScratch,
+        scratch: &mut DensityScratch,
     ) -> Rgb {
         let point = vertex.point;
         let normal = if point.ng.dot(vertex.wo) < 0.0 {
@@ -107,9 +121,24 @@ impl PhotonMap {
             height * height <= MAX_ELEVATION * MAX_ELEVATION * dist_sq + 4.0 * error_sq
                 && self.columns.normal[slot as usize].dot(normal) >= MIN_NORMAL_COSINE
         };
-        let found = self
-            .tree
-            .nearest_where(point.p, settings.nearest, settings.max_radius, accept, scratch);
+        let DensityScratch { nearest, last } = scratch;
+        let bound = last.map_or(f32::INFINITY, |(place, radius)| {
+            (radius + place.distance(point.p)) * ROUNDED_UP
+        });
+        let mut found = self.tree.nearest_where(
+            point.p,
+            settings.nearest,
+            bound.min(settings.max_radius),
+            accept,
+            nearest,
+        );
+        if found.kth().is_none() && bound < settings.max_radius {
+            // The last estimate was on another surface, with other photons.
+            found = self
+                .tree
+                .nearest_where(point.p, settings.nearest, settings.max_radius, accept, nearest);
+        }
+        *last = found.kth().map(|kth| (point.p, kth.dist_sq.sqrt()));
         let max_radius_sq = settings.max_radius * settings.max_radius;
         let radius_sq = found.kth().map_or(max_radius_sq, |kth| kth.dist_sq);
         if radius_sq <= 0.0 {

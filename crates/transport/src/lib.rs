@@ -33,7 +33,7 @@ mod scene;
 mod vertex;
 
 pub use camera::Camera;
-pub use density::{DensityFilter, DensitySettings, PhotonColumns, PhotonMap};
+pub use density::{DensityFilter, DensityScratch, DensitySettings, PhotonColumns, PhotonMap};
 pub use emission::{EmissionSampler, EmittedPhoton};
 pub use light::{LightSample, LightSource, LightTable};
 pub use path::{Path, arrive, emitted_light, sample_direct_light, scatter};

@@ -3,11 +3,11 @@
 use glam::{DAffine3, DVec3, Vec3};
 use radiometry::{Rgb, SampleStream, StageKey};
 use scattering::{Bsdf, DielectricBsdf, DiffuseBsdf, Microsurface};
-use spatial::{Geometry, Instance, NearestScratch, PhotonTree, Ray, RayScene, Shape};
+use spatial::{Geometry, Instance, PhotonTree, Ray, RayScene, Shape};
 use transport::{
-    DensityFilter, DensitySettings, EmissionSampler, Event, Layer, LightSource, MapKind, MapKinds, Material, Methods,
-    PHOTON_STAGE, Path, PhotonColumns, PhotonMap, Scene, TargetSphere, Vertex, arrive, emitted_light,
-    sample_direct_light, scatter, trace_photon,
+    DensityFilter, DensityScratch, DensitySettings, EmissionSampler, Event, Layer, LightSource, MapKind, MapKinds,
+    Material, Methods, PHOTON_STAGE, Path, PhotonColumns, PhotonMap, Scene, TargetSphere, Vertex, arrive,
+    emitted_light, sample_direct_light, scatter, trace_photon,
 };
 
 fn diffuse(albedo: f32) -> Material {
@@ -307,7 +307,7 @@ fn a_uniform_photon_field_returns_one_with_every_filter_and_k() {
     );
     let scene = scene(&[plane], vec![]);
     let mut path = Path::from_eye(0, SampleStream::new(0, StageKey::new("field"), 0, 0));
-    let mut scratch = NearestScratch::new();
+    let mut scratch = DensityScratch::default();
     for filter in [
         DensityFilter::Disc,
         DensityFilter::Cone,

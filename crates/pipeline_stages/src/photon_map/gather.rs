@@ -3,8 +3,7 @@ use bevy_ecs::prelude::*;
 use pipeline_core::{Counter, Counters, record_items};
 use pipeline_data::{Contribution, ContributionLog, HitStream, PathStream, RayStream, RenderSettings, TransportScene};
 use rayon::prelude::*;
-use spatial::NearestScratch;
-use transport::Vertex;
+use transport::{DensityScratch, Vertex};
 
 /// Caustics that were read from the photon map. Written by `gather_caustics`.
 #[derive(Component, Clone, Debug, Default)]
@@ -40,7 +39,7 @@ pub(super) fn gather_caustics(
     let mut batches: Vec<_> = batches.iter_mut().collect();
     let lookups = batches
         .par_iter_mut()
-        .map_init(NearestScratch::new, |scratch, (rays, paths, hits, log)| {
+        .map_init(DensityScratch::default, |scratch, (rays, paths, hits, log)| {
             let mut lookups = 0;
             for ((ray, path), hit) in rays.0.iter().zip(&paths.0).zip(&hits.0) {
                 let Some(hit) = hit else { continue };
