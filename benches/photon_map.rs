@@ -3,7 +3,10 @@
 //! `photon_map/store` overwrites an existing pool of entities, which is what the second and later passes do; beside it
 //! the same photons are written to a `Vec`. `cargo bench --bench photon_map`.
 
-#![expect(clippy::print_stdout, reason = "the share of photons that count is part of the result")]
+#![expect(
+    clippy::print_stdout,
+    reason = "the share of photons that count is part of the result"
+)]
 
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemState;
@@ -60,21 +63,49 @@ fn store(criterion: &mut Criterion) {
 fn ring() -> Scene {
     let place = |x, y, z| DAffine3::from_translation(DVec3::new(x, y, z));
     let shapes = [
-        (Shape::Quad { size: Vec2::splat(8.0) }, DAffine3::from_rotation_x(-std::f64::consts::FRAC_PI_2)),
-        (Shape::Band { inner_radius: 1.0, outer_radius: 1.1, height: 0.5, bevel: 0.02 }, place(0.0, 0.251, 0.0)),
+        (
+            Shape::Quad { size: Vec2::splat(8.0) },
+            DAffine3::from_rotation_x(-std::f64::consts::FRAC_PI_2),
+        ),
+        (
+            Shape::Band {
+                inner_radius: 1.0,
+                outer_radius: 1.1,
+                height: 0.5,
+                bevel: 0.02,
+            },
+            place(0.0, 0.251, 0.0),
+        ),
         (Shape::Sphere { radius: 0.1 }, place(3.0, 2.0, -1.0)),
     ];
     let instances = shapes
         .iter()
         .enumerate()
-        .map(|(i, (_, placed))| Instance { geometry: i as u32, world_from_object: *placed })
+        .map(|(i, (_, placed))| Instance {
+            geometry: i as u32,
+            world_from_object: *placed,
+        })
         .collect();
     let geometries = shapes.iter().map(|(shape, _)| Geometry::Shape(*shape)).collect();
     let rays = RayScene::build(geometries, instances).expect("a valid scene");
-    let gold = ConductorBsdf::new(ConductorFresnel::Schlick(Rgb::new(1.0, 0.78, 0.34)), Microsurface::SMOOTH);
-    let bsdfs = [Bsdf::Diffuse(DiffuseBsdf::new(Rgb::splat(0.6))), Bsdf::Conductor(gold), Bsdf::Black];
-    let materials = bsdfs.map(|bsdf| Material { bsdf, absorption: Rgb::BLACK });
-    let light = LightSource::Area { instance: 2, radiance: Rgb::splat(300.0), two_sided: false };
+    let gold = ConductorBsdf::new(
+        ConductorFresnel::Schlick(Rgb::new(1.0, 0.78, 0.34)),
+        Microsurface::SMOOTH,
+    );
+    let bsdfs = [
+        Bsdf::Diffuse(DiffuseBsdf::new(Rgb::splat(0.6))),
+        Bsdf::Conductor(gold),
+        Bsdf::Black,
+    ];
+    let materials = bsdfs.map(|bsdf| Material {
+        bsdf,
+        absorption: Rgb::BLACK,
+    });
+    let light = LightSource::Area {
+        instance: 2,
+        radiance: Rgb::splat(300.0),
+        two_sided: false,
+    };
     Scene::new(rays, materials.to_vec(), vec![0, 1, 2], vec![light])
 }
 
@@ -85,7 +116,10 @@ fn trace(criterion: &mut Criterion) {
     group.sample_size(10).throughput(Throughput::Elements(u64::from(PATHS)));
     for (name, sampler) in [
         ("uniform", EmissionSampler::uniform(&scene.lights)),
-        ("aimed", EmissionSampler::aimed(&scene.lights, scene.specular_targets(), 0.1)),
+        (
+            "aimed",
+            EmissionSampler::aimed(&scene.lights, scene.specular_targets(), 0.1),
+        ),
     ] {
         let mut stored = 0_u64;
         group.bench_function(BenchmarkId::new(name, PATHS), |b| {

@@ -22,8 +22,15 @@ const SAMPLES: u32 = 4;
 fn prepared(scene: &str) -> App {
     let mut app = App::empty();
     app.add_plugins((CorePlugin, DefaultStages));
-    let scene = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/references").join(scene).join("scene.ron");
-    app.insert_resource(RenderRequest { scene, samples: Some(SAMPLES), ..RenderRequest::default() });
+    let scene = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/references")
+        .join(scene)
+        .join("scene.ron");
+    app.insert_resource(RenderRequest {
+        scene,
+        samples: Some(SAMPLES),
+        ..RenderRequest::default()
+    });
     app.world_mut().run_schedule(Load);
     app.world_mut().run_schedule(Prepare);
     let report = app.world().resource::<Report>();
@@ -67,7 +74,8 @@ fn fused(world: &World) -> Film {
             let domain = u64::from(pixel.y) * width + u64::from(pixel.x);
             for sample in 0..SAMPLES {
                 let lens = SampleStream::new(seed, CAMERA, domain, sample);
-                let position = Vec2::new(pixel.x as f32 + 0.5, pixel.y as f32 + 0.5) + filter.sample(lens.draw_2d(0, 0));
+                let position =
+                    Vec2::new(pixel.x as f32 + 0.5, pixel.y as f32 + 0.5) + filter.sample(lens.draw_2d(0, 0));
                 let mut ray = camera.ray(position);
                 let mut path = Path::from_eye(0, SampleStream::new(seed, PATH, domain, sample));
                 let mut layers = [[0.0_f32; 3]; 5];
@@ -106,11 +114,18 @@ fn fused(world: &World) -> Film {
 fn bench(criterion: &mut Criterion) {
     let mut app = prepared("cornell");
     let mut group = criterion.benchmark_group("render_pass/cornell/256x256x4");
-    group.sample_size(10).throughput(Throughput::Elements(256 * 256 * u64::from(SAMPLES)));
+    group
+        .sample_size(10)
+        .throughput(Throughput::Elements(256 * 256 * u64::from(SAMPLES)));
     for threads in [1, 2] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
         let world = app.world_mut();
-        group.bench_function(BenchmarkId::new("wavefront", threads), |b| b.iter(|| pool.install(|| wavefront(world))));
+        group.bench_function(BenchmarkId::new("wavefront", threads), |b| {
+            b.iter(|| pool.install(|| wavefront(world)))
+        });
         group.bench_function(BenchmarkId::new("fused", threads), |b| {
             b.iter(|| black_box(pool.install(|| fused(world)).pixel_count()))
         });
@@ -118,7 +133,10 @@ fn bench(criterion: &mut Criterion) {
     group.finish();
     // The two are the same estimator with the same numbers, so they must agree to the bit.
     let fused = fused(app.world()).resolve();
-    assert!(app.world().resource::<FilmSums>().0.resolve().rgb("") == fused.rgb(""), "wavefront and fused loop differ");
+    assert!(
+        app.world().resource::<FilmSums>().0.resolve().rgb("") == fused.rgb(""),
+        "wavefront and fused loop differ"
+    );
 }
 
 criterion_group!(benches, bench);

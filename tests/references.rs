@@ -9,7 +9,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn scene(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/references").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/references")
+        .join(name)
 }
 
 /// Renders a reference scene and reads the image back.
@@ -29,7 +31,10 @@ fn render(name: &str, label: &str, arguments: &[&str]) -> ExrImage {
 }
 
 fn reference(name: &str) -> RgbImage {
-    read_exr(&scene(name).join("reference.exr")).expect("a valid image").rgb("").expect("R, G, B")
+    read_exr(&scene(name).join("reference.exr"))
+        .expect("a valid image")
+        .rgb("")
+        .expect("R, G, B")
 }
 
 fn beauty(image: &ExrImage) -> RgbImage {
@@ -40,10 +45,20 @@ fn beauty(image: &ExrImage) -> RgbImage {
 fn assert_equal_samples(name: &str, k: f64, own: f64) {
     let image = render(name, "traced", &["--samples", "256"]);
     let found = compare(&beauty(&image), &reference(name), 0).expect("same size");
-    println!("{name}: means off by {:?}, relMSE {}", found.relative_difference, found.rel_mse);
-    assert!(found.relative_difference.iter().all(|d| d.abs() < 0.005), "{name}: {found:?}");
+    println!(
+        "{name}: means off by {:?}, relMSE {}",
+        found.relative_difference, found.rel_mse
+    );
+    assert!(
+        found.relative_difference.iter().all(|d| d.abs() < 0.005),
+        "{name}: {found:?}"
+    );
     let limit = 1.2 * k / 256.0 + own;
-    assert!(found.rel_mse <= limit, "{name}: relMSE {} exceeds {limit}", found.rel_mse);
+    assert!(
+        found.rel_mse <= limit,
+        "{name}: relMSE {} exceeds {limit}",
+        found.rel_mse
+    );
 }
 
 #[test]
@@ -65,7 +80,10 @@ fn furnaces_shine_alike_everywhere() {
         let image = render(name, "traced", &["--samples", "256"]);
         let found = compare(&beauty(&image), &reference(name), 0).expect("same size");
         println!("{name}: means {:?}", found.mean_image);
-        assert!(found.mean_image.iter().all(|mean| (mean - 1.0).abs() < 0.001), "{name}: {found:?}");
+        assert!(
+            found.mean_image.iter().all(|mean| (mean - 1.0).abs() < 0.001),
+            "{name}: {found:?}"
+        );
     }
 }
 
@@ -76,16 +94,31 @@ fn traced_ring_has_the_mean_of_the_reference() {
     let seeds: Vec<[f64; 3]> = (0..8)
         .map(|seed| {
             let seed_text = seed.to_string();
-            let image = render("ring", &format!("seed{seed}"), &["--samples", "32", "--seed", &seed_text]);
-            compare(&beauty(&image), &reference("ring"), 0).expect("same size").mean_image
+            let image = render(
+                "ring",
+                &format!("seed{seed}"),
+                &["--samples", "32", "--seed", &seed_text],
+            );
+            compare(&beauty(&image), &reference("ring"), 0)
+                .expect("same size")
+                .mean_image
         })
         .collect();
-    let expected = compare(&reference("ring"), &reference("ring"), 0).expect("same size").mean_image;
+    let expected = compare(&reference("ring"), &reference("ring"), 0)
+        .expect("same size")
+        .mean_image;
     for channel in 0..3 {
         let mean = seeds.iter().map(|s| s[channel]).sum::<f64>() / 8.0;
-        let variance = seeds.iter().map(|s| (s[channel] - mean) * (s[channel] - mean)).sum::<f64>() / 7.0;
+        let variance = seeds
+            .iter()
+            .map(|s| (s[channel] - mean) * (s[channel] - mean))
+            .sum::<f64>()
+            / 7.0;
         let standard_error = (variance / 8.0).sqrt();
-        println!("ring, channel {channel}: {mean} ± {standard_error} against {}", expected[channel]);
+        println!(
+            "ring, channel {channel}: {mean} ± {standard_error} against {}",
+            expected[channel]
+        );
         assert!((mean - expected[channel]).abs() < 0.01 * expected[channel] + 3.0 * standard_error);
     }
 }
@@ -117,15 +150,27 @@ fn caustic_region(caustic: &RgbImage) -> Vec<bool> {
 fn assert_photon_map_meets_reference(name: &str, region_samples: &str, tolerance: f64) {
     let traced = render(name, "region", &["--samples", region_samples]);
     let region = caustic_region(&traced.rgb("caustic").expect("a caustic layer"));
-    let image = render(name, "photons", &["--samples", "256", "--set", "/Render.LightTransport.caustic=PhotonMap"]);
+    let image = render(
+        name,
+        "photons",
+        &["--samples", "256", "--set", "/Render.LightTransport.caustic=PhotonMap"],
+    );
     let mean = |image: &RgbImage| {
         let inside = image.pixels.iter().zip(&region).filter(|(_, inside)| **inside);
-        inside.map(|(pixel, _)| pixel.iter().map(|v| f64::from(*v)).sum::<f64>()).sum::<f64>()
+        inside
+            .map(|(pixel, _)| pixel.iter().map(|v| f64::from(*v)).sum::<f64>())
+            .sum::<f64>()
     };
     let (ours, theirs) = (mean(&beauty(&image)), mean(&reference(name)));
     let difference = ours / theirs - 1.0;
-    println!("{name}: caustic region of {} pixels, off by {difference}", region.iter().filter(|r| **r).count());
-    assert!(region.iter().any(|inside| *inside) && difference.abs() < tolerance, "{name}: off by {difference}");
+    println!(
+        "{name}: caustic region of {} pixels, off by {difference}",
+        region.iter().filter(|r| **r).count()
+    );
+    assert!(
+        region.iter().any(|inside| *inside) && difference.abs() < tolerance,
+        "{name}: off by {difference}"
+    );
 }
 
 #[test]

@@ -9,7 +9,7 @@ use std::f32::consts::PI;
 pub enum DensityFilter {
     /// All alike.
     Disc,
-    /// 1 − d/r: Jensen 1996, with k_c = 1.
+    /// 1 − d/r: Jensen 1996, with `k_c` = 1.
     #[default]
     Cone,
     /// Jensen's Gaussian, β = 1.953, with the α that normalises it (García Hernández et al. 2014).
@@ -93,7 +93,7 @@ const MIN_NORMAL_COSINE: f32 = 0.8;
 impl PhotonMap {
     /// Estimates the radiance that a vertex reflects of the photons around it.
     ///
-    /// L_o(x, ω_o) ≈ Σ_p w_p f_d(x, ω_p, ω_o) Φ_p / (π r²)
+    /// `L_o(x, ω_o) ≈ Σ_p w_p f_d(x, ω_p, ω_o) Φ_p / (π r²)`
     ///
     /// Source: Jensen, "Global Illumination using Photon Maps", EGWR 1996.
     /// Differs: the k-th photon only sets the radius (García Hernández et al. 2012), so that a uniform field is unbiased

@@ -1,6 +1,6 @@
 use crate::light::{Light, LightTable};
 use crate::projection::TargetSphere;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use radiometry::{Distribution, Frame, Rgb, SampleStream, StageKey, warp};
 use spatial::{Ray, spawn_origin};
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
@@ -35,11 +35,11 @@ pub struct EmissionSampler<'a> {
 }
 
 mod dimension {
-    pub(super) const LIGHT: u32 = 0;
+    /// Choice of aim, light and target, and the direction: all from one pair, nested, so that the photons of each light
+    /// and target are stratified over their directions. Where the way to the surface is smooth, so is their density.
+    pub(super) const DIRECTION: u32 = 0;
     pub(super) const POSITION: u32 = 1;
-    pub(super) const SHARE: u32 = 2;
-    pub(super) const DIRECTION: u32 = 3;
-    pub(super) const SIDE: u32 = 4;
+    pub(super) const SIDE: u32 = 2;
 }
 
 impl<'a> EmissionSampler<'a> {
@@ -76,10 +76,17 @@ impl<'a> EmissionSampler<'a> {
     /// `None` when this draw carries no flux; it counts as emitted all the same.
     #[must_use]
     pub fn emit(&self, stream: &SampleStream) -> Option<EmittedPhoton> {
-        let u_light = stream.draw_1d(0, dimension::LIGHT);
-        let aims = stream.draw_1d(0, dimension::SHARE) >= self.uniform_share;
-        let choice = if aims { &self.aimed_choice } else { self.lights.choice() };
-        let (row, _, u_cone) = choice.sample(u_light)?;
+        let u = stream.draw_2d(0, dimension::DIRECTION);
+        let aims = u.x >= self.uniform_share;
+        let (choice, u_choice) = if aims {
+            (
+                &self.aimed_choice,
+                (u.x - self.uniform_share) / (1.0 - self.uniform_share),
+            )
+        } else {
+            (self.lights.choice(), u.x / self.uniform_share)
+        };
+        let (row, _, rest) = choice.sample(u_choice)?;
         // Densities with which the light is chosen to shine as it does, and to aim.
         let uniform = self.uniform_share * self.lights.choice().probability(row);
         let aimed = (1.0 - self.uniform_share) * self.aimed_choice.probability(row);
@@ -87,8 +94,7 @@ impl<'a> EmissionSampler<'a> {
             uniform,
             aimed,
             aims,
-            u_cone,
-            stream,
+            u: Vec2::new(rest, u.y),
         };
         let photon = match self.lights.light(row) {
             Light::Point { position, intensity } => {
@@ -137,25 +143,22 @@ impl<'a> EmissionSampler<'a> {
 
     /// A point outside the scene from where `direction` leads through it, and the density of light and point, per area
     /// across.
-    fn origin_at_infinity(&self, direction: Vec3, draw: &Draw<'_>) -> Option<(Vec3, f32)> {
+    fn origin_at_infinity(&self, direction: Vec3, draw: &Draw) -> Option<(Vec3, f32)> {
         let (centre, radius) = self.lights.bounding_sphere();
         if radius <= 0.0 {
             return None;
         }
         let frame = Frame::from_normal(direction);
-        let disc = warp::sample_unit_disc(draw.stream.draw_2d(0, dimension::DIRECTION));
-        let across = |from: Vec3, r: f32| from + frame.x * (disc.x * r) + frame.y * (disc.y * r);
+        let across = |from: Vec3, r: f32, u: Vec2| {
+            let disc = warp::sample_unit_disc(u);
+            from + frame.x * (disc.x * r) + frame.y * (disc.y * r)
+        };
         let discs: f32 = self.targets.iter().map(|t| t.radius * t.radius).sum();
         let through = if draw.aims {
-            let mut rest = draw.u_cone * discs;
-            let chosen = self.targets.iter().find(|t| {
-                rest -= t.radius * t.radius;
-                rest <= 0.0
-            });
-            let target = chosen.or(self.targets.last())?;
-            across(target.centre, target.radius)
+            let (target, rest) = choose(self.targets, |t| t.radius * t.radius / discs, draw.u.x)?;
+            across(target.centre, target.radius, Vec2::new(rest, draw.u.y))
         } else {
-            across(centre, radius)
+            across(centre, radius, draw.u)
         };
         let distance_sq_across = |c: Vec3| (through - c).reject_from_normalized(direction).length_squared();
         let in_scene = distance_sq_across(centre) <= radius * radius;
@@ -178,26 +181,24 @@ impl<'a> EmissionSampler<'a> {
 }
 
 /// One choice of a light, and of whether to aim.
-struct Draw<'s> {
+struct Draw {
     /// Probability of this light without aim.
     uniform: f32,
     /// Probability of this light with aim.
     aimed: f32,
     aims: bool,
-    /// What is left of the number that chose the light.
-    u_cone: f32,
-    stream: &'s SampleStream,
+    /// What is left of the numbers after these choices; uniform in [0, 1).
+    u: Vec2,
 }
 
-impl Draw<'_> {
+impl Draw {
     /// A direction, and the density of light and direction, per solid angle; `normal` for surfaces that shine by
     /// Lambert's law. `None` when it was to be aimed and no target is in view from here.
     fn direction(&self, cones: &Cones, normal: Option<Vec3>) -> Option<(Vec3, f32)> {
-        let u = self.stream.draw_2d(0, dimension::DIRECTION);
         let direction = match (self.aims, normal) {
-            (true, _) => cones.sample(self.u_cone, u)?,
-            (false, Some(n)) => Frame::from_normal(n).world_from_local(warp::sample_cosine_hemisphere(u)),
-            (false, None) => warp::sample_uniform_sphere(u),
+            (true, _) => cones.sample(self.u)?,
+            (false, Some(n)) => Frame::from_normal(n).world_from_local(warp::sample_cosine_hemisphere(self.u)),
+            (false, None) => warp::sample_uniform_sphere(self.u),
         };
         let uniform_pdf = match normal {
             Some(n) => warp::pdf_cosine_hemisphere(n.dot(direction)),
@@ -206,6 +207,19 @@ impl Draw<'_> {
         let pdf = self.uniform * uniform_pdf + self.aimed * cones.pdf(direction);
         (pdf > 0.0).then_some((direction, pdf))
     }
+}
+
+/// Chooses one of a few items by probabilities that add up to 1; also returns `u` stretched back over [0, 1).
+fn choose<T>(items: &[T], probability: impl Fn(&T) -> f32, u: f32) -> Option<(&T, f32)> {
+    let mut below = 0.0;
+    for (i, item) in items.iter().enumerate() {
+        let p = probability(item);
+        if u < below + p || i + 1 == items.len() {
+            return Some((item, ((u - below) / p).clamp(0.0, 1.0 - f32::EPSILON)));
+        }
+        below += p;
+    }
+    None
 }
 
 /// Roughly the flux that a light sends to the targets, in W; zero only when it is exactly zero.
@@ -273,15 +287,11 @@ impl Cones {
         &self.cones[..self.count]
     }
 
-    fn sample(&self, u_cone: f32, u: glam::Vec2) -> Option<Vec3> {
-        let mut rest = u_cone * self.solid_angle;
-        let chosen = self.all().iter().find(|(_, one_minus_cos)| {
-            rest -= TAU * one_minus_cos;
-            rest <= 0.0
-        });
-        let (axis, one_minus_cos) = *chosen.or(self.all().last())?;
-        let local = warp::sample_uniform_cone(u, one_minus_cos);
-        Some(Frame::from_normal(axis).world_from_local(local).normalize())
+    fn sample(&self, u: Vec2) -> Option<Vec3> {
+        let share = |(_, one_minus_cos): &(Vec3, f32)| TAU * one_minus_cos / self.solid_angle;
+        let ((axis, one_minus_cos), rest) = choose(self.all(), share, u.x)?;
+        let local = warp::sample_uniform_cone(Vec2::new(rest, u.y), *one_minus_cos);
+        Some(Frame::from_normal(*axis).world_from_local(local).normalize())
     }
 
     /// Solid angles weighted with the cosine of their axes, but never with less than a twentieth: a cone whose axis is

@@ -68,7 +68,7 @@ pub(crate) enum Light {
         intensity: Rgb,
     },
     Area {
-        sampler: SurfaceSampler,
+        sampler: Box<SurfaceSampler>,
         radiance: Rgb,
         two_sided: bool,
     },
@@ -114,7 +114,7 @@ impl LightTable {
                     radiance,
                     two_sided,
                 } => {
-                    let Some(sampler) = SurfaceSampler::new(rays, instance) else {
+                    let Some(sampler) = SurfaceSampler::new(rays, instance).map(Box::new) else {
                         continue;
                     };
                     let sides = if two_sided { 2.0 } else { 1.0 };

@@ -43,7 +43,7 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// f(ω_o, ω_i)·|cosθ_i| by class, and the density with which [`Vertex::sample`] returns `wi`.
+    /// `f(ω_o, ω_i)·|cosθ_i|` by class, and the density with which [`Vertex::sample`] returns `wi`.
     #[inline]
     #[must_use]
     pub fn eval_and_pdf(&self, wi: Vec3) -> (LobeValues, f32) {
@@ -56,7 +56,7 @@ impl<'a> Vertex<'a> {
         (values, pdf)
     }
 
-    /// f(ω_o, ω_i)·|cosθ_i| of the diffuse lobes over the geometric |cosθ_i|: what weighs the flux of a photon that
+    /// `f(ω_o, ω_i)·|cosθ_i|` of the diffuse lobes over the geometric `|cosθ_i|`: what weighs the flux of a photon that
     /// came from `wi`.
     #[inline]
     #[must_use]
