@@ -13,7 +13,7 @@ use bevy_ecs::system::SystemState;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DAffine3, DVec3, Vec2};
 use pipeline_data::{CausticPhoton, Photon};
-use pipeline_stages::photon_map::{PoolSystemParam, store_in_pool};
+use pipeline_stages::photon_map::{PhotonPool, store_in_pool};
 use radiometry::{Rgb, SampleStream};
 use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DiffuseBsdf, Microsurface};
 use spatial::{Geometry, Instance, RayScene, Shape};
@@ -41,7 +41,7 @@ fn store(criterion: &mut Criterion) {
         let source = photons(n);
         let mut world = World::new();
         world.spawn_batch(source.iter().map(|photon| (*photon, CausticPhoton)).collect::<Vec<_>>());
-        let mut state: SystemState<PoolSystemParam> = SystemState::new(&mut world);
+        let mut state: SystemState<PhotonPool> = SystemState::new(&mut world);
         group.bench_function(BenchmarkId::new("world", n), |b| {
             b.iter(|| {
                 let mut pool = state.get_mut(&mut world).expect("the query is valid");

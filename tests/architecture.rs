@@ -175,8 +175,10 @@ fn tokens(source: &str) -> Vec<&str> {
     found
 }
 
-/// Length of the comment, string or character that `rest` begins with, or 0. A raw string is known by the `r` and the
-/// signs before it, and its hashes are left as signs.
+/// Length of the comment, string or character that `rest` begins with, or 0.
+///
+/// - `before`: the token before it; an `r` makes a string raw.
+/// - Knows raw strings with at most one hash, and no comments inside comments.
 fn skipped_length(rest: &str, before: Option<&str>) -> usize {
     let to = |end: &str, from: usize| rest[from..].find(end).map_or(rest.len(), |at| from + at + end.len());
     if rest.starts_with("//") {

@@ -174,9 +174,8 @@ fn layers_add_up_to_the_beauty_image() {
             assert!(!is_black(layer), "{name} has no part in it");
         }
         for (i, beauty) in layer(&image, "").pixels.iter().enumerate() {
-            for c in 0..3 {
+            for (c, whole) in beauty.iter().copied().map(f64::from).enumerate() {
                 let sum: f64 = layers.iter().map(|layer| f64::from(layer.pixels[i][c])).sum();
-                let whole = f64::from(beauty[c]);
                 assert!(
                     (sum - whole).abs() <= SAME_SUM * whole,
                     "{caustic}, pixel {i}, channel {c}: layers add up to {sum}, beauty is {whole}"

@@ -64,7 +64,7 @@ pub(crate) struct RenderArgs {
     #[arg(short, long = "output", value_name = "FILE", value_parser = parse::output)]
     pub(crate) output: Vec<PathBuf>,
     /// Samples a pixel, in place of the scene's
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_777_216))]
     pub(crate) samples: Option<u32>,
     /// Stop after the first pass that ends later than this: 90, 30s, 2m, 1h, 500ms
     #[arg(long, value_name = "TIME", value_parser = parse::duration)]

@@ -89,9 +89,10 @@ fn describe(
     let Some(mut schedule) = world.resource_mut::<Schedules>().remove(label) else {
         return Ok(ScheduleDescription { name, sets: Vec::new() });
     };
-    let built = schedule
-        .initialize(world)
-        .map_err(|error| format!("schedule {name} cannot be built: {error}"));
+    let built = schedule.initialize(world).map_err(|error| {
+        let reason = error.to_string(schedule.graph(), world);
+        format!("schedule {name} cannot be built: {reason}")
+    });
     let order: Vec<_> = schedule
         .systems()
         .map(|systems| systems.map(|(key, system)| (key, system.name().to_string())).collect())

@@ -14,13 +14,13 @@ pub struct RenderClock {
     pub live_paths: u64,
     /// Bounce that [`Bounce`] runs for, from 0.
     pub bounce: u32,
-    /// Waves that are rendered.
+    /// Waves that are rendered; begins with those that a resumed film already has.
     pub waves_done: u64,
     /// Waves of the whole image, all samples included.
     pub waves_total: u64,
     /// Waves that make a whole pass: one more sample, or a few, in every pixel.
     pub waves_per_pass: u64,
-    /// Stop before the first pass that would start later than this after the start of rendering.
+    /// Stop before the first pass that would start later than this after the start of loading.
     pub time_limit: Option<Duration>,
     /// Load and prepare only.
     pub check_only: bool,
@@ -43,8 +43,8 @@ pub enum Outcome {
 
 /// Runs the schedules from [`Load`] to [`Finish`].
 ///
-/// Photon batches and waves are where an interruption and the time limit are noticed, so their size bounds how long
-/// that takes. The time limit ends on whole passes, and one pass is always rendered.
+/// An interruption is noticed between photon batches and between waves, the time limit between passes: it ends on whole
+/// passes, and one pass with samples to take is always rendered.
 pub fn render(app: &mut App) -> Outcome {
     let started = Instant::now();
     let world = app.world_mut();
@@ -70,14 +70,16 @@ pub fn render(app: &mut App) -> Outcome {
     }
     let clock = world.resource::<RenderClock>();
     let (total, per_pass, limit) = (clock.waves_total, clock.waves_per_pass.max(1), clock.time_limit);
+    let first_stop = clock.waves_done + per_pass;
     let progress = world.resource::<Progress>().clone();
     progress.start("rendering", "waves", total);
     while !cancellation.is_requested() {
         let clock = world.resource::<RenderClock>();
         let done = clock.waves_done;
         progress.set_done(done);
-        let out_of_time =
-            done >= per_pass && done.is_multiple_of(per_pass) && limit.is_some_and(|limit| started.elapsed() >= limit);
+        let out_of_time = done >= first_stop
+            && done.is_multiple_of(per_pass)
+            && limit.is_some_and(|limit| started.elapsed() >= limit);
         if done >= total || out_of_time {
             break;
         }

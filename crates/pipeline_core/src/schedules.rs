@@ -39,7 +39,7 @@ pub enum LoadSystems {
 /// The order inside [`Prepare`].
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
 pub enum PrepareSystems {
-    /// After it, the settings of the render are checked and every geometry knows its place and material.
+    /// After it, every prim has its place in the world.
     ResolveTransforms,
     /// After it, rays can be traced.
     BuildAcceleration,

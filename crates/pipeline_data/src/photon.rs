@@ -1,7 +1,6 @@
 use bevy_ecs::component::Component;
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
-use radiometry::{Rgb, pack_direction, unpack_direction};
+use radiometry::{Rgb, pack_direction};
 
 /// A photon stored where it reached a diffuse surface. Written by `photon_map`; one entity each, by the hundred
 /// thousand; 40 bytes. Its marker ([`CausticPhoton`]) says which map it belongs to.
@@ -34,14 +33,6 @@ impl From<transport::Deposit> for Photon {
             path: d.path,
             bounce: d.bounce,
         }
-    }
-}
-
-impl Photon {
-    /// Direction to where it came from.
-    #[must_use]
-    pub fn direction(&self) -> Vec3 {
-        unpack_direction(self.direction)
     }
 }
 

@@ -2,6 +2,7 @@ use bevy_ecs::change_detection::Mut;
 use bevy_ecs::component::{Component, Mutable};
 use bevy_ecs::resource::Resource;
 use bevy_ecs::world::EntityMut;
+use film::{AuxGroup, ChannelLayout};
 use glam::{Vec2, Vec3};
 use radiometry::Rgb;
 use spatial::{Ray, SurfacePoint};
@@ -124,3 +125,25 @@ impl Contributions {
 /// The film: exact sums of all samples so far. Made and filled by `image`, read by `camera`.
 #[derive(Resource, Debug)]
 pub struct FilmSums(pub film::Film);
+
+impl FilmSums {
+    /// Layers that the film has: all but `volume`, which nothing renders yet.
+    pub const LAYERS: usize = 5;
+
+    /// Channels of the film.
+    #[must_use]
+    pub fn layout() -> ChannelLayout {
+        ChannelLayout {
+            layers: Layer::ALL[..Self::LAYERS]
+                .iter()
+                .map(|layer| layer.name().into())
+                .collect(),
+            aux: vec![
+                AuxGroup::rgb("albedo"),
+                AuxGroup::xyz("normal"),
+                AuxGroup::depth("depth"),
+            ],
+            variance: false,
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use crate::math;
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI, TAU};
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
 
 /// Samples the unit disc uniformly; density 1/π.
 ///
@@ -64,13 +64,6 @@ pub fn sample_uniform_cone(u: Vec2, one_minus_cos_max: f32) -> Vec3 {
     Vec3::new(sin_theta * cos, sin_theta * sin, 1.0 - one_minus_cos)
 }
 
-/// Density of [`sample_uniform_cone`] inside the cone, per solid angle.
-#[inline]
-#[must_use]
-pub fn pdf_uniform_cone(one_minus_cos_max: f32) -> f32 {
-    1.0 / (TAU * one_minus_cos_max)
-}
-
 /// 1 − cosθ of the cone that a sphere of `radius` subtends from `distance`; 2 (all directions) from inside it.
 #[inline]
 #[must_use]
@@ -104,19 +97,6 @@ pub fn solid_angle_pdf(pdf_area: f32, distance_sq: f32, cos_theta: f32) -> f32 {
     pdf_area * distance_sq / cos_theta.abs()
 }
 
-/// Balance heuristic: weight of the technique with density `a` against one with density `b`.
-///
-/// Source: Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", SIGGRAPH 1995.
-/// An infinite `a` has weight 1, an infinite `b` weight 0.
-#[inline]
-#[must_use]
-pub fn balance_heuristic(a: f32, b: f32) -> f32 {
-    if a.is_infinite() {
-        return 1.0;
-    }
-    if a > 0.0 { a / (a + b) } else { 0.0 }
-}
-
 /// Power heuristic with exponent 2: weight of the technique with density `a` against one with density `b`.
 ///
 /// Source: Veach and Guibas 1995. Computed as 1/(1 + (b/a)²), which neither overflows nor divides by zero.
@@ -132,13 +112,6 @@ pub fn power_heuristic(a: f32, b: f32) -> f32 {
     } else {
         0.0
     }
-}
-
-/// Area of the unit sphere's cap with this 1 − cosθ: its solid angle in steradians.
-#[inline]
-#[must_use]
-pub fn solid_angle_of_cap(one_minus_cos: f32) -> f32 {
-    2.0 * PI * one_minus_cos
 }
 
 #[cfg(test)]
@@ -174,7 +147,6 @@ mod tests {
     #[test]
     fn heuristics_add_up_to_one_and_stand_infinities() {
         for (a, b) in [(1.0, 2.0), (1e-20, 1e20), (3.0, 0.0)] {
-            assert!((balance_heuristic(a, b) + balance_heuristic(b, a) - 1.0).abs() < 1e-6);
             assert!((power_heuristic(a, b) + power_heuristic(b, a) - 1.0).abs() < 1e-6);
         }
         assert_eq!(power_heuristic(f32::INFINITY, 1.0), 1.0);

@@ -162,6 +162,13 @@ impl Bsdf {
         }
     }
 
+    /// Tells whether a lobe passes light to the other side.
+    #[inline]
+    #[must_use]
+    pub fn transmits(&self) -> bool {
+        matches!(self, Self::Dielectric(_))
+    }
+
     /// True when a lobe is not delta, so that `eval` can be anything but zero.
     #[inline]
     #[must_use]

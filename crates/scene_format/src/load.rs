@@ -126,8 +126,10 @@ fn compose_file(
     if !frame.is_finite() {
         report.push(Diagnostic::error("not-finite", "the frame must be finite"));
     }
+    let mut hash = hash_scene(&composed.prims, time, &folders.root);
+    crate::mix_hash(&mut hash, "frame", &frame.to_le_bytes());
     Some(Scene {
-        hash: hash_scene(&composed.prims, time, &folders.root),
+        hash,
         prims: composed.prims,
         index: composed.index,
         default_prim,

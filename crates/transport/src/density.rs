@@ -51,6 +51,15 @@ pub struct DensitySettings {
     pub filter: DensityFilter,
 }
 
+impl DensitySettings {
+    /// The radius in metres within which `nearest` of `photons` lie when all are spread evenly over `area` m²:
+    /// `π r² N / A = k`.
+    #[must_use]
+    pub fn even_radius(nearest: u32, photons: u32, area: f64) -> f32 {
+        (f64::from(nearest) * area / (std::f64::consts::PI * f64::from(photons))).sqrt() as f32
+    }
+}
+
 /// What the inner loop reads of each photon, in the order of the tree.
 #[derive(Clone, Debug, Default)]
 pub struct PhotonColumns {
@@ -110,16 +119,16 @@ impl PhotonMap {
         scratch: &mut DensityScratch,
     ) -> Rgb {
         let point = vertex.point;
-        let normal = if point.ng.dot(vertex.wo) < 0.0 {
-            -point.ng
-        } else {
-            point.ng
-        };
+        let normal = vertex.facing_normal();
+        // A surface that transmits is lit from behind as well.
+        let transmits = vertex.bsdf.transmits();
         let error_sq = point.error * point.error;
         let accept = |slot: u32, offset: Vec3, dist_sq: f32| {
             let height = offset.dot(normal);
-            height * height <= MAX_ELEVATION * MAX_ELEVATION * dist_sq + 4.0 * error_sq
-                && self.columns.normal[slot as usize].dot(normal) >= MIN_NORMAL_COSINE
+            height * height <= MAX_ELEVATION * MAX_ELEVATION * dist_sq + 4.0 * error_sq && {
+                let cosine = self.columns.normal[slot as usize].dot(normal);
+                (if transmits { cosine.abs() } else { cosine }) >= MIN_NORMAL_COSINE
+            }
         };
         let DensityScratch { nearest, last } = scratch;
         let bound = last.map_or(f32::INFINITY, |(place, radius)| {

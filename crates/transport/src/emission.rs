@@ -222,7 +222,7 @@ fn choose<T>(items: &[T], probability: impl Fn(&T) -> f32, u: f32) -> Option<(&T
     None
 }
 
-/// Roughly the flux that a light sends to the targets, in W; zero only when it is exactly zero.
+/// Roughly the flux that a light sends to the targets, in W. Zero where no probe sees one: then uniform emission has to do.
 fn flux_to_targets(light: &Light, targets: &[TargetSphere]) -> f64 {
     /// Points of an area light that are asked.
     const PROBES: u32 = 16;

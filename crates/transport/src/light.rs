@@ -169,12 +169,6 @@ impl LightTable {
         self.choice.total()
     }
 
-    /// True when some light is a point.
-    #[must_use]
-    pub fn has_delta_light(&self) -> bool {
-        self.lights.iter().any(|light| matches!(light, Light::Point { .. }))
-    }
-
     /// Chooses a light and a direction to it as seen from `from`.
     ///
     /// - `u_choice`, `u`: uniform in [0, 1).

@@ -5,7 +5,7 @@ use radiometry::{Rgb, SampleStream, math, warp};
 use scattering::Transport;
 use spatial::{Ray, SurfacePoint, spawn_origin};
 
-/// A path from the eye, between two bounces. 52 bytes.
+/// A path from the eye, between two bounces. 56 bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Path {
     /// What light met now is weighted with, by the sampling so far.
@@ -26,7 +26,7 @@ pub struct Path {
     pub class: PathClass,
 }
 
-const _: () = assert!(size_of::<Path>() <= 56);
+const _: () = assert!(size_of::<Path>() == 56);
 
 impl Path {
     /// [`Path::medium`] of a path that is in no material.
@@ -58,24 +58,42 @@ mod dimension {
 }
 
 /// Events before Russian roulette begins.
-const ROULETTE_DEPTH: u32 = 4;
+pub(crate) const ROULETTE_DEPTH: u32 = 4;
 /// Most that a path may survive with, so that roulette ends every path.
-const ROULETTE_MAX: f32 = 0.95;
+pub(crate) const ROULETTE_MAX: f32 = 0.95;
 
 /// Follows a ray to what it meets, and lets the material that it travels in absorb on the way.
 #[inline]
 #[must_use]
 pub fn arrive(scene: &Scene, path: &mut Path, ray: &Ray) -> Option<SurfacePoint> {
-    let hit = scene.rays.intersect(ray);
-    if path.medium != Path::VACUUM {
-        let absorption = scene.material_by_row(path.medium).absorption;
-        path.throughput *= transmittance(absorption, hit.as_ref().map_or(f32::INFINITY, |hit| hit.t));
+    let Some(hit) = scene.rays.intersect(ray) else {
+        path.throughput *= transmittance(absorption_before(scene, path.medium, ray, None), f32::INFINITY);
+        return None;
+    };
+    let point = scene.rays.surface(ray, &hit);
+    path.throughput *= transmittance(absorption_before(scene, path.medium, ray, Some(&point)), hit.t);
+    Some(point)
+}
+
+/// The absorption coefficient along a ray, up to what it meets.
+///
+/// That of the medium it travels in. A path that began inside of glass, at a camera or a light there, does not know so;
+/// it arrives at the inner side of the surface, which tells.
+pub(crate) fn absorption_before(scene: &Scene, medium: u32, ray: &Ray, point: Option<&SurfacePoint>) -> Rgb {
+    if medium != Path::VACUUM {
+        return scene.material_by_row(medium).absorption;
     }
-    hit.map(|hit| scene.rays.surface(ray, &hit))
+    match point {
+        Some(point) if ray.direction.dot(point.ng) > 0.0 => scene.material(point).absorption,
+        _ => Rgb::BLACK,
+    }
 }
 
 /// exp(−σ t) per channel: the law of Beer and Lambert. A coefficient of zero lets everything through at any distance.
 pub(crate) fn transmittance(absorption: Rgb, distance: f32) -> Rgb {
+    if absorption.is_black() {
+        return Rgb::WHITE;
+    }
     absorption.map(|sigma| if sigma > 0.0 { math::exp(-sigma * distance) } else { 1.0 })
 }
 

@@ -129,12 +129,6 @@ impl PathClass {
     pub const fn ends_as_caustic(self) -> bool {
         self.0 & AFTER_DIFFUSE != 0 && self.0 & LAST_SPECULAR != 0
     }
-
-    /// True when there is no event yet.
-    #[must_use]
-    pub const fn is_eye(self) -> bool {
-        self.0 & FIRST_ANY == 0
-    }
 }
 
 /// How direct light is found.

@@ -1,5 +1,5 @@
 use crate::emission::EmittedPhoton;
-use crate::path::{Path, medium_behind, transmittance};
+use crate::path::{Path, ROULETTE_DEPTH, ROULETTE_MAX, absorption_before, medium_behind, transmittance};
 use crate::path_class::Event;
 use crate::scene::Scene;
 use crate::vertex::Vertex;
@@ -104,7 +104,7 @@ mod dimension {
 /// alike.
 ///
 /// - `wanted`: only such photons are stored, and no photon is followed that cannot become one.
-/// - `max_depth`: most events.
+/// - `max_depth`: most events; a photon that is not finite or has no flux left ends as well.
 /// - `path`: the number of this photon; `stream` its random numbers, from bounce 1 on.
 pub fn trace_photon(
     scene: &Scene,
@@ -120,17 +120,14 @@ pub fn trace_photon(
     let mut medium = Path::VACUUM;
     for bounce in 0.. {
         let Some(hit) = scene.rays.intersect(&ray) else { return };
-        if medium != Path::VACUUM {
-            flux *= transmittance(scene.material_by_row(medium).absorption, hit.t);
-        }
         let point = scene.rays.surface(&ray, &hit);
+        flux *= transmittance(absorption_before(scene, medium, &ray, Some(&point)), hit.t);
+        if flux.is_black() || !flux.is_finite() {
+            return;
+        }
         let vertex = Vertex::new(scene, &point, -ray.direction);
-        if vertex.bsdf.has_diffuse() && wanted.wants(kind) && !flux.is_black() {
-            let normal = if point.ng.dot(vertex.wo) < 0.0 {
-                -point.ng
-            } else {
-                point.ng
-            };
+        if vertex.bsdf.has_diffuse() && wanted.wants(kind) {
+            let normal = vertex.facing_normal();
             store(Deposit {
                 position: point.p,
                 direction: vertex.wo,
@@ -154,7 +151,9 @@ pub fn trace_photon(
             return;
         }
         let scattered = flux * sample.weight;
-        let survival = (scattered.max_element() / flux.max_element()).min(1.0);
+        // Without a limit below 1, a photon caught in lossless glass would never end.
+        let most = if bounce < ROULETTE_DEPTH { 1.0 } else { ROULETTE_MAX };
+        let survival = (scattered.max_element() / flux.max_element()).min(most);
         if survival < 1.0 && stream.draw_1d(bounce + 1, dimension::ROULETTE) >= survival {
             return;
         }

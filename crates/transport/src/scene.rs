@@ -104,12 +104,6 @@ impl Scene {
     pub fn diffuse_area(&self) -> f64 {
         self.diffuse_area
     }
-
-    /// A sphere around all geometry: centre and radius in metres; radius 0 when there is none.
-    #[must_use]
-    pub fn bounding_sphere(&self) -> (Vec3, f32) {
-        bounding_sphere(&self.rays)
-    }
 }
 
 pub(crate) fn bounding_sphere(rays: &RayScene) -> (Vec3, f32) {

@@ -8,7 +8,8 @@ use spatial::SurfacePoint;
 ///
 /// Rules for shading normals that differ from the geometric one, all in this file:
 /// - directions that the two normals see on different sides carry nothing;
-/// - where the view itself is such a direction, the geometric normal shades, so that silhouettes do not turn black;
+/// - where the view itself is such a direction, the geometric normal shades, so that silhouettes do not turn black
+///   (photons that leave in such a direction are lost all the same: there the two methods differ a little);
 /// - diffuse reflection is softened towards the terminator by the factor of Chiang, Li and Burley, "Taming the Shadow
 ///   Terminator", SIGGRAPH Talks 2019;
 /// - photons get the factor of Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, eq. 5.19.
@@ -66,13 +67,23 @@ impl<'a> Vertex<'a> {
         if (wi_local.z > 0.0) != (cos_geometric > 0.0) {
             return Rgb::BLACK;
         }
-        // On a flat surface the cosines cancel. On a curved one their quotient is bounded, or one grazing photon would
-        // outshine all the others.
-        let cos = cos_geometric.abs().max(0.25 * wi_local.z.abs());
-        if cos <= 0.0 {
+        if cos_geometric == 0.0 {
             return Rgb::BLACK;
         }
-        self.bsdf.eval(self.wo_local, wi_local, Transport::Radiance).diffuse * (1.0 / cos)
+        // The quotient of the cosines grows towards the horizon, but the terminator factor falls as fast.
+        let diffuse = self.bsdf.eval(self.wo_local, wi_local, Transport::Radiance).diffuse;
+        diffuse * (self.terminator(wi, wi_local.z) / cos_geometric.abs())
+    }
+
+    /// The unit geometric normal on the side of `wo`.
+    #[inline]
+    #[must_use]
+    pub fn facing_normal(&self) -> Vec3 {
+        if self.point.ng.dot(self.wo) < 0.0 {
+            -self.point.ng
+        } else {
+            self.point.ng
+        }
     }
 
     /// The value of a Lambertian reflection, albedo/π, where the surface is one and flat; `None` elsewhere.

@@ -405,6 +405,35 @@ fn photons_and_paths_agree_on_a_caustic() {
 }
 
 #[test]
+fn photons_caught_in_lossless_glass_end() {
+    // A quarter of the directions inside a cube of glass meet total reflection on all of its faces.
+    let cube = (Shape::Cuboid { size: Vec3::ONE }, DAffine3::IDENTITY, glass(0.0));
+    let ground = (
+        Shape::Quad {
+            size: glam::Vec2::splat(8.0),
+        },
+        at(0.0, -1.0, 0.0) * floor(),
+        diffuse(0.5),
+    );
+    let light = LightSource::Point {
+        position: Vec3::new(0.1, 0.2, 0.05),
+        intensity: Rgb::WHITE,
+    };
+    let scene = scene(&[cube, ground], vec![light]);
+    let sampler = EmissionSampler::aimed(&scene.lights, scene.specular_targets(), 0.1);
+    let mut stored = 0;
+    for path in 0..4096 {
+        let stream = SampleStream::new(0, PHOTON_STAGE, 0, path);
+        if let Some(photon) = sampler.emit(&stream) {
+            trace_photon(&scene, &photon, MapKinds::CAUSTIC, u32::MAX, path, &stream, |_| {
+                stored += 1
+            });
+        }
+    }
+    assert!(stored > 0);
+}
+
+#[test]
 fn the_state_machine_of_photons_never_leaves_indirect() {
     let events = [Event::Specular, Event::Diffuse, Event::Volume];
     for a in events {

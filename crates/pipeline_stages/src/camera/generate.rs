@@ -11,10 +11,11 @@ use transport::Path;
 pub(super) fn plan_waves(
     mut commands: Commands,
     settings: Option<Res<RenderSettings>>,
+    film: Option<Res<FilmSums>>,
     mut clock: ResMut<RenderClock>,
     report: Res<Report>,
 ) {
-    let (Some(settings), false) = (settings, report.failed()) else {
+    let (Some(settings), Some(film), false) = (settings, film, report.failed()) else {
         return;
     };
     let size = settings.crop_max - settings.crop_min;
@@ -32,6 +33,12 @@ pub(super) fn plan_waves(
     };
     clock.waves_per_pass = pixels.div_ceil(plan.pixels_per_wave) as u64;
     clock.waves_total = clock.waves_per_pass * u64::from(settings.samples.div_ceil(samples_per_pass));
+    // A resumed film has its whole passes behind it.
+    let has = (0..film.0.pixel_count())
+        .map(|pixel| film.0.sample_count(pixel))
+        .min()
+        .unwrap_or(0);
+    clock.waves_done = (clock.waves_per_pass * u64::from(has / samples_per_pass)).min(clock.waves_total);
     commands.insert_resource(plan);
 }
 

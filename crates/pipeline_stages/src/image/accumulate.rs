@@ -1,9 +1,11 @@
-use super::LAYERS;
 use bevy_ecs::prelude::*;
 use bevy_ecs::world::EntityMut;
 use pipeline_core::{Counter, Counters, record_items};
 use pipeline_data::{Contributions, FilmBatch, FilmSums, FirstHits};
 use rayon::prelude::*;
+
+/// Layers of the film.
+const LAYERS: usize = FilmSums::LAYERS;
 
 /// The counters of this system, asked for once.
 pub(super) struct SampleCounters {

@@ -1,12 +1,10 @@
-use super::LAYERS;
 use bevy_ecs::prelude::*;
-use film::{AuxGroup, ChannelLayout, Film, FilmWindow};
+use film::{Film, FilmWindow};
 use pipeline_core::Report;
 use pipeline_data::{ComposedScene, FilmSums, RenderRequest, RenderSettings};
 use std::fs::File;
 use std::io::{BufReader, ErrorKind};
 use std::path::PathBuf;
-use transport::Layer;
 
 /// Where an interrupted render keeps what it has: beside its first output.
 pub(super) fn checkpoint_path(request: &RenderRequest) -> Option<PathBuf> {
@@ -16,9 +14,10 @@ pub(super) fn checkpoint_path(request: &RenderRequest) -> Option<PathBuf> {
     Some(first.with_file_name(name))
 }
 
-/// What a checkpoint has to agree with: the composed scene, seed, resolution and crop. The number of samples may differ.
+/// What a checkpoint has to agree with: the program, the composed scene at its frame, seed, resolution and crop. The number of samples may differ.
 pub(super) fn checkpoint_key(scene: &ComposedScene, settings: &RenderSettings) -> [u8; 32] {
     let mut key = scene.0.hash;
+    scene_format::mix_hash(&mut key, "version", env!("CARGO_PKG_VERSION").as_bytes());
     scene_format::mix_hash(&mut key, "seed", &settings.seed.to_le_bytes());
     for (label, value) in [
         ("resolution", settings.resolution),
@@ -29,19 +28,6 @@ pub(super) fn checkpoint_key(scene: &ComposedScene, settings: &RenderSettings) -
         scene_format::mix_hash(&mut key, label, &value.y.to_le_bytes());
     }
     key
-}
-
-/// Channels of the film.
-pub(super) fn layout() -> ChannelLayout {
-    ChannelLayout {
-        layers: Layer::ALL[..LAYERS].iter().map(|layer| layer.name().into()).collect(),
-        aux: vec![
-            AuxGroup::rgb("albedo"),
-            AuxGroup::xyz("normal"),
-            AuxGroup::depth("depth"),
-        ],
-        variance: false,
-    }
 }
 
 /// Makes an empty film, or takes up the one that an interrupted render left.
@@ -65,7 +51,13 @@ pub(super) fn allocate_film(
         match File::open(&path) {
             Ok(file) => {
                 let key = checkpoint_key(&scene, &settings);
-                match Film::load(&mut BufReader::new(file), &key, window, layout(), request.tile_size) {
+                match Film::load(
+                    &mut BufReader::new(file),
+                    &key,
+                    window,
+                    FilmSums::layout(),
+                    request.tile_size,
+                ) {
                     Ok(film) => resumed = Some(film),
                     Err(error) => {
                         report.fail(format!(
@@ -89,7 +81,7 @@ pub(super) fn allocate_film(
             }
         }
     }
-    match resumed.map_or_else(|| Film::new(window, layout(), request.tile_size), Ok) {
+    match resumed.map_or_else(|| Film::new(window, FilmSums::layout(), request.tile_size), Ok) {
         Ok(film) => commands.insert_resource(FilmSums(film)),
         Err(error) => report.fail(format!("error[film]: {error}")),
     }

@@ -26,9 +26,6 @@ use pipeline_core::{
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ImageSystems;
 
-/// Layers on the film: all but `volume`, which nothing renders yet.
-const LAYERS: usize = 5;
-
 /// Adds the image.
 pub struct ImagePlugin;
 

@@ -32,7 +32,15 @@ pub(super) fn write_images(
         version: env!("CARGO_PKG_VERSION").into(),
         extra: Vec::new(),
     };
+    let has_samples = (0..film.0.pixel_count()).any(|i| film.0.sample_count(i) > 0);
     for path in &request.outputs {
+        if !has_samples && path.exists() {
+            report.warn(format!(
+                "warning[no-samples]: interrupted before the first sample; {} is left as it was",
+                path.display()
+            ));
+            continue;
+        }
         let is_png = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
         let written = if is_png {
             image.0.rgb("").map_or(Ok(()), |beauty| {

@@ -3,7 +3,7 @@
 //! Scene: `"/Render": Def(CausticPhotonMap: (photons: 50000, nearest: 50), LightTransport: (caustic: PhotonMap))`
 //! Sets: `PrepareStages` (`plan_photons`), `EmitPhotons`, `TracePhotons`, `StorePhotons`, `BuildPhotonMaps`, `LookUp`
 //! (`gather_caustics`).
-//! Reads the transport scene and the settings. Writes photon entities ([`Photon`](pipeline_data::Photon) with
+//! Reads the transport scene and the settings. Writes photon entities ([`Photon`] with
 //! [`CausticPhoton`](pipeline_data::CausticPhoton)), the tree over them, and contributions.
 //! Counters: `photon_map/photons emitted`, `photon_map/photons stored`, `photon_map/lookups`.
 //!
@@ -34,7 +34,7 @@ use transport::{DensitySettings, EmittedPhoton};
 pub use build::CausticMap;
 pub use gather::CausticContribution;
 pub use settings::{CausticPhotonMap, PhotonFilter};
-pub use store::{PoolSystemParam, store_in_pool};
+pub use store::{PhotonPool, store_in_pool};
 
 /// Where this stage works.
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
@@ -67,6 +67,17 @@ struct PhotonRun {
 }
 
 impl PhotonRun {
+    fn new(wanted: u64, density: DensitySettings) -> Self {
+        Self {
+            wanted,
+            emitted: 0,
+            batch: Vec::new(),
+            landed: Vec::new(),
+            is_over: false,
+            density,
+        }
+    }
+
     /// True when enough photons have landed, or too many were emitted for more to be worth waiting for.
     fn has_enough(&self) -> bool {
         let most = self

@@ -9,9 +9,9 @@ use transport::DensityFilter;
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(Component, Default)]
 pub struct CausticPhotonMap {
-    /// Photons to store. More: sharper and less noisy caustics, more memory (about 145 bytes each) and time.
+    /// Photons to store. More: sharper and less noisy caustics, more memory (about 150 bytes each) and time.
     /// Emission goes on in whole batches until they are stored, at most 100 times as many.
-    #[reflect(@Range::closed(1.0, 40_000_000.0))]
+    #[reflect(@Range::at_least(1.0))]
     pub photons: u32,
     /// Photons that set the radius of an estimate. Fewer: sharper and noisier; more: smoother and blurred.
     #[reflect(@Range::closed(2.0, 100_000.0))]

@@ -4,7 +4,7 @@ use pipeline_core::{Counter, Counters, record_items};
 use pipeline_data::{CausticPhoton, Photon};
 
 /// The query that [`store_in_pool`] overwrites.
-pub type PoolSystemParam<'w, 's> = Query<'w, 's, &'static mut Photon, With<CausticPhoton>>;
+pub type PhotonPool<'w, 's> = Query<'w, 's, &'static mut Photon, With<CausticPhoton>>;
 
 /// The counter of this system, asked for once.
 pub(super) struct StoredCounter(Counter);
@@ -19,7 +19,7 @@ impl FromWorld for StoredCounter {
 pub(super) fn store_photons(
     mut commands: Commands,
     mut run: ResMut<PhotonRun>,
-    mut pool: PoolSystemParam<'_, '_>,
+    mut pool: PhotonPool<'_, '_>,
     entities: Query<Entity, (With<Photon>, With<CausticPhoton>)>,
     stored: Local<StoredCounter>,
 ) {
@@ -44,7 +44,7 @@ pub(super) fn store_photons(
 }
 
 /// Overwrites the photon entities that there are, column by column; returns how many photons found a place.
-pub fn store_in_pool(photons: &[Photon], pool: &mut PoolSystemParam<'_, '_>) -> usize {
+pub fn store_in_pool(photons: &[Photon], pool: &mut PhotonPool<'_, '_>) -> usize {
     let mut done = 0;
     if let Ok(columns) = pool.contiguous_iter_mut() {
         for mut column in columns {

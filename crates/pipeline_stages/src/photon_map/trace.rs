@@ -29,7 +29,8 @@ pub(super) fn trace_photons(
     mut report: ResMut<Report>,
 ) {
     let first = run.emitted;
-    let max_depth = settings.methods.max_depth;
+    // The eye has an event of its own where the photon is read.
+    let max_depth = settings.methods.max_depth.saturating_sub(1);
     let follow = |(task, photons): (usize, &[_])| {
         let mut landed = Vec::new();
         for (i, photon) in photons.iter().enumerate() {

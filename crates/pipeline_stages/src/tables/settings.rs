@@ -1,12 +1,12 @@
 use super::camera::rigid_frame;
 use bevy_ecs::prelude::*;
-use film::{ChannelLayout, FilmWindow};
+use film::FilmWindow;
 use glam::UVec2;
 use pipeline_data::vocabulary::{
     Camera, Film, Findings, IndirectMethod, LightTransport, Render, SceneReport, SpecularMethod, component_place,
     field_place,
 };
-use pipeline_data::{CameraFrame, PrimIndex, RenderRequest, RenderSettings, SceneOrigin, WorldTransform};
+use pipeline_data::{CameraFrame, FilmSums, PrimIndex, RenderRequest, RenderSettings, SceneOrigin, WorldTransform};
 use scene_format::{Diagnostic, Scene};
 
 /// A film that would take more memory than this is refused: it is a slip of the pen, not a picture.
@@ -37,6 +37,11 @@ pub(super) fn resolve_settings(
         let default = Film::default();
         let settings = settings(*index, render, film.unwrap_or(&default), methods, request);
         check_film(scene, &settings, request, &mut findings);
+        if render.passes.is_some() {
+            let finding = Diagnostic::error("not-supported-yet", "`Render.passes` is not supported yet")
+                .note("leave it out: no method of this version is progressive");
+            findings.push_at(field_place(scene, index.0, "Render", &["passes"]), finding);
+        }
         let frame = find_camera(scene, &settings, render, &cameras, &origin, &mut findings);
         if let (Some(frame), false) = (frame, findings.has_error()) {
             commands.insert_resource(frame);
@@ -158,7 +163,7 @@ fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest,
         let note = "a crop is x0 y0 x1 y1 in pixels from the top left; the last two are one beyond its last pixel";
         findings.push(Diagnostic::error("bad-crop", message).note(note));
     } else {
-        let bytes = film::memory_bytes(&window, &ChannelLayout::standard());
+        let bytes = film::memory_bytes(&window, &FilmSums::layout());
         if bytes > MOST_FILM_BYTES {
             let message = format!(
                 "a film of {} × {} pixels takes {} GiB of memory; at most {} GiB are used",
