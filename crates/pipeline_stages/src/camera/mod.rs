@@ -28,9 +28,9 @@ const PATH_STAGE: StageKey = StageKey::new("path");
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct CameraSystems;
 
-/// Most paths of a wave. Small enough for the streams of a wave to stay in the cache between two systems, large enough
-/// that scheduling costs nothing.
-const WAVE_PATHS: usize = 1 << 15;
+/// Most paths of a wave. Larger waves have fewer moments at which one thread waits for the others, smaller ones stay in
+/// the cache; `cargo bench --bench wavefront` tells (see the decisions in `crates/ARCHITECTURE.md`).
+const WAVE_PATHS: usize = 1 << 17;
 
 /// Most paths of a batch, the unit of work of one thread.
 const BATCH_PATHS: usize = 1 << 10;
