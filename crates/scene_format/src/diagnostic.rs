@@ -1,5 +1,6 @@
 //! What went wrong, where, and what to do about it.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use crate::render::render;
@@ -155,6 +156,7 @@ pub(crate) struct Report {
     pub(crate) errors: Vec<Diagnostic>,
     pub(crate) warnings: Vec<Diagnostic>,
     pub(crate) omitted: usize,
+    said: BTreeSet<(&'static str, Option<Place>, String)>,
 }
 
 impl Report {
@@ -165,6 +167,14 @@ impl Report {
             self.errors.push(diagnostic);
         } else {
             self.omitted += 1;
+        }
+    }
+
+    /// Adds a message unless the same was said of the same place before: one mistake in a file may
+    /// be met on the way to many prims.
+    pub(crate) fn push_once(&mut self, diagnostic: Diagnostic) {
+        if self.said.insert((diagnostic.code, diagnostic.place, diagnostic.message.clone())) {
+            self.push(diagnostic);
         }
     }
 

@@ -1,6 +1,8 @@
 //! One file as it was written: opinions with places, nothing composed yet.
 
+use std::collections::HashSet;
 use std::fmt;
+use std::hash::Hash;
 
 use bevy_reflect::PartialReflect;
 
@@ -35,32 +37,51 @@ pub(crate) enum ListEdit<T> {
     },
 }
 
+impl<T> ListEdit<T> {
+    /// Makes a list of other things of it; items without one are left out.
+    pub(crate) fn filter_map<U>(&self, mut f: impl FnMut(&T) -> Option<U>) -> ListEdit<U> {
+        let mut each = |items: &[T]| items.iter().filter_map(&mut f).collect();
+        match self {
+            Self::Explicit(items) => ListEdit::Explicit(each(items)),
+            Self::Edit {
+                prepend,
+                append,
+                delete,
+            } => ListEdit::Edit {
+                prepend: each(prepend),
+                append: each(append),
+                delete: each(delete),
+            },
+        }
+    }
+}
+
 impl<T: Clone> ListEdit<T> {
-    /// Applies this opinion to the list that the weaker ones made; `same` says which items are one.
-    pub(crate) fn apply(&self, list: &mut Vec<T>, same: impl Fn(&T, &T) -> bool) {
+    /// Applies this opinion to the list that the weaker ones made; items with one `key` are one.
+    pub(crate) fn apply<K: Eq + Hash>(&self, list: &mut Vec<T>, key: impl Fn(&T) -> K) {
+        let keys = |items: &[T]| -> HashSet<K> { items.iter().map(&key).collect() };
         match self {
             Self::Explicit(items) => {
-                list.clear();
-                for item in items {
-                    if !list.iter().any(|other| same(other, item)) {
-                        list.push(item.clone());
-                    }
-                }
+                let mut seen = HashSet::new();
+                *list = items.iter().filter(|item| seen.insert(key(item))).cloned().collect();
             }
             Self::Edit {
                 prepend,
                 append,
                 delete,
             } => {
-                list.retain(|item| !delete.iter().any(|other| same(other, item)));
-                for item in prepend.iter().rev() {
-                    list.retain(|other| !same(other, item));
-                    list.insert(0, item.clone());
-                }
-                for item in append {
-                    list.retain(|other| !same(other, item));
-                    list.push(item.clone());
-                }
+                let deleted = keys(delete);
+                list.retain(|item| !deleted.contains(&key(item)));
+                let mut front = HashSet::new();
+                let mut all: Vec<T> = prepend.iter().filter(|item| front.insert(key(item))).cloned().collect();
+                all.extend(list.drain(..).filter(|item| !front.contains(&key(item))));
+                let mut back = HashSet::new();
+                // Of an item that is appended twice the last mention counts.
+                let mut last: Vec<&T> = append.iter().rev().filter(|item| back.insert(key(item))).collect();
+                last.reverse();
+                all.retain(|item| !back.contains(&key(item)));
+                all.extend(last.into_iter().cloned());
+                *list = all;
             }
         }
     }

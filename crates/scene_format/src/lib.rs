@@ -76,12 +76,13 @@ mod asset;
 mod attributes;
 mod compose;
 mod diagnostic;
+mod explain;
+mod flatten;
 mod hash;
 mod layer;
 mod lex;
 mod load;
 mod mesh;
-mod namespace;
 mod options;
 mod path;
 mod read;
@@ -96,14 +97,19 @@ mod source;
 mod validate;
 
 pub use attributes::{Exclusive, Range, Required, Unit};
+pub use compose::ArcKind;
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use explain::explain;
+pub use flatten::{errors_json, flatten_json, flatten_ron};
 pub use hash::mix_hash;
 pub use layer::{Specifier, TimeSettings};
 pub use load::{load, load_str};
 pub use mesh::{MeshError, MeshLimits, MeshWarning, ObjMesh, Oddity, load_obj, parse_obj};
 pub use options::{Limits, Options};
 pub use relation::{AssetPath, Target, Targets};
-pub use scene::{AssetUse, ComponentValue, FieldState, FieldValue, Opinion, Prim, Scene, ValueAt};
+pub use scene::{
+    AssetUse, ComponentValue, Contributor, FieldState, FieldValue, Opinion, Prim, Scene, ValueAt, VariantChoice,
+};
 pub use schema::{ComponentInfo, FieldInfo, Schema, SchemaError};
 pub use schema_text::schema_text;
 pub use source::{Place, SourceId, Sources};

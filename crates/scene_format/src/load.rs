@@ -1,19 +1,16 @@
 //! From a file to a scene: reading, composing, checking, in this order.
 
-use std::cell::RefCell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::asset::{Folders, read_text};
-use crate::compose::{compose, refuse_arcs};
+use crate::compose::{Composed, LayerId, Library, compose};
 use crate::diagnostic::{Diagnostic, Diagnostics, Report};
 use crate::hash::hash_scene;
-use crate::namespace::Namespace;
 use crate::options::Options;
-use crate::read::read_layer;
 use crate::scene::Scene;
 use crate::schema::Schema;
-use crate::session::{SetOpinion, read_set, refuse_variant};
-use crate::source::{Place, SourceId, Sources};
+use crate::session::read_session;
+use crate::source::{Place, Sources};
 use crate::validate::{check_fields, check_targets, resolve_assets};
 
 /// Loads the scene in a file.
@@ -23,13 +20,13 @@ use crate::validate::{check_fields, check_targets, resolve_assets};
 /// Everything that is wrong with it, up to 20 messages; after a mistake of syntax that one.
 pub fn load(path: &Path, schema: &Schema<'_>, options: &Options) -> Result<Scene, Diagnostics> {
     let name = path.display().to_string();
-    let mut sources = Sources::default();
     let folder = folder_of(path);
     match read_text(path, &options.limits) {
-        Ok(text) => load_text(&name, folder, text, schema, options),
+        Ok(text) => load_text(&name, folder, text, path.canonicalize().ok(), schema, options),
         Err((error, text)) => {
+            let mut sources = Sources::default();
             let end = text.len() as u32;
-            let source = sources.add_file(&name, folder, text);
+            let source = sources.add_file(&name, folder, text, None);
             let mut report = Report::default();
             report.push(if error.code == "not-utf-8" {
                 error.at(Place {
@@ -52,7 +49,7 @@ pub fn load(path: &Path, schema: &Schema<'_>, options: &Options) -> Result<Scene
 /// As [`load`].
 pub fn load_str(name: &str, text: &str, schema: &Schema<'_>, options: &Options) -> Result<Scene, Diagnostics> {
     let folder = folder_of(Path::new(name));
-    load_text(name, folder, text.to_owned(), schema, options)
+    load_text(name, folder, text.to_owned(), None, schema, options)
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -62,71 +59,66 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
+/// - `canonical`: the file that the text is from, so that other files may name it.
 fn load_text(
     name: &str,
     folder: &Path,
     text: String,
+    canonical: Option<PathBuf>,
     schema: &Schema<'_>,
     options: &Options,
 ) -> Result<Scene, Diagnostics> {
     let folders = Folders::of(folder, options.root.as_deref());
-    let mut sources = Sources::default();
-    let report = RefCell::new(Report::default());
+    let mut library = Library::new(schema, &options.limits, folders);
     if text.len() > options.limits.file_bytes.min(u32::MAX as usize) {
         let message = format!("{name} has more than {} bytes", options.limits.file_bytes);
-        report.borrow_mut().push(Diagnostic::error("too-large", message));
-        return Err(report.into_inner().into_diagnostics(sources));
+        library.report.push(Diagnostic::error("too-large", message));
+        return Err(library.report.into_diagnostics(library.sources));
     }
-    let source = sources.add_file(name, &folders.scene, text);
-    match compose_file(source, &mut sources, &folders, schema, options, &report) {
-        Some(mut scene) if !report.borrow().is_refused() => {
-            scene.warnings = report.into_inner().warnings;
-            scene.sources = sources;
+    let folder = library.folders.scene.clone();
+    let source = library.sources.add_file(name, &folder, text, None);
+    let scene = library
+        .add_text(source, canonical)
+        .and_then(|layer| compose_scene(&mut library, layer, options));
+    match scene {
+        Some(mut scene) if !library.report.is_refused() => {
+            scene.warnings = library.report.warnings;
+            scene.sources = library.sources;
             Ok(scene)
         }
-        _ => Err(report.into_inner().into_diagnostics(sources)),
+        _ => Err(library.report.into_diagnostics(library.sources)),
     }
 }
 
-/// Does everything; the scene counts only if nothing was reported.
-fn compose_file(
-    source: SourceId,
-    sources: &mut Sources,
-    folders: &Folders,
-    schema: &Schema<'_>,
-    options: &Options,
-    report: &RefCell<Report>,
-) -> Option<Scene> {
-    let limits = &options.limits;
-    let mut layer = read_layer(sources, source, schema, limits, report)?;
-    let tree = Namespace::of(&mut layer, limits, &mut report.borrow_mut());
-    refuse_arcs(&layer, &tree, &mut report.borrow_mut());
-    for variant in &options.variants {
-        refuse_variant(variant, sources, &tree, &mut report.borrow_mut());
+/// Composes a scene and checks it; it counts only if no error was reported.
+fn compose_scene(library: &mut Library<'_, '_>, layer: LayerId, options: &Options) -> Option<Scene> {
+    let mut composed = compose_with_session(library, layer, options)?;
+    let root = library.layer(layer);
+    let (time, default_prim) = (root.time.unwrap_or_default(), root.default_prim.clone());
+    let default_prim = default_prim.map(|name| {
+        let path = library.paths.text(name.value);
+        if !composed.index.contains_key(&path) {
+            let message = format!("`default_prim` names `{path}`, which is not here");
+            let error = Diagnostic::error("missing-prim", message).at(name.place);
+            library.report.push(error);
+        }
+        path
+    });
+    let report = &mut library.report;
+    check_fields(&composed.prims, library.schema, report);
+    if options.check_targets {
+        check_targets(&composed, report);
     }
-    let sets = read_sets(sources, &tree, schema, options, report);
-    let report = &mut *report.borrow_mut();
-    let mut composed = compose(tree, sets, schema, limits, report);
-    check_fields(&composed.prims, schema, report);
-    check_targets(&composed, report);
     let assets = if options.check_assets {
-        resolve_assets(&mut composed.prims, sources, folders, report)
+        resolve_assets(&mut composed.prims, &library.sources, &library.folders, report)
     } else {
         Vec::new()
     };
-    let default_prim = layer.default_prim.map(|name| {
-        if !composed.index.contains_key(&name.value) {
-            let message = format!("`default_prim` names `{}`, which is not here", name.value);
-            report.push(Diagnostic::error("missing-prim", message).at(name.place));
-        }
-        name.value
-    });
-    let time = layer.time.unwrap_or_default();
     let frame = options.frame.unwrap_or(time.start);
     if !frame.is_finite() {
         report.push(Diagnostic::error("not-finite", "the frame must be finite"));
     }
-    let mut hash = hash_scene(&composed.prims, time, &folders.root);
+    let mut hash = hash_scene(&composed.prims, time, &library.folders.root);
     crate::mix_hash(&mut hash, "frame", &frame.to_le_bytes());
     Some(Scene {
         hash,
@@ -138,21 +130,26 @@ fn compose_file(
         warnings: Vec::new(),
         assets,
         sources: Sources::default(),
-        folders: folders.clone(),
+        folders: library.folders.clone(),
     })
 }
 
-fn read_sets(
-    sources: &mut Sources,
-    tree: &Namespace,
-    schema: &Schema<'_>,
-    options: &Options,
-    report: &RefCell<Report>,
-) -> Vec<SetOpinion> {
-    let mut sets = Vec::new();
-    for text in &options.sets {
-        let source = sources.add_argument("--set", text);
-        sets.extend(read_set(sources, source, tree, schema, &options.limits, report));
+/// Composes a file below what the command line says; none if files could not be read, which makes
+/// further messages pointless.
+fn compose_with_session(library: &mut Library<'_, '_>, layer: LayerId, options: &Options) -> Option<Composed> {
+    let session = read_session(library, options);
+    let mut found = None;
+    if session.has_short_sets() {
+        let above = session.layer(library, None);
+        let stack = library.build_stack(layer, Some(above));
+        found = Some(compose(library, stack, options.load_payloads));
     }
-    sets
+    let above = (!session.is_empty()).then(|| session.layer(library, found.as_ref()));
+    let stack = library.build_stack(layer, above);
+    let composed = compose(library, stack, options.load_payloads);
+    if library.report.is_refused() && !library.is_complete() {
+        return None;
+    }
+    session.check(&composed, &mut library.report);
+    Some(composed)
 }

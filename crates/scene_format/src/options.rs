@@ -7,6 +7,8 @@ use std::path::PathBuf;
 pub struct Limits {
     /// Bytes of one file; 64 MiB.
     pub file_bytes: usize,
+    /// Files; 1,000.
+    pub layers: usize,
     /// Prims; 1,000,000.
     pub prims: usize,
     /// Length of a prim's path in names; 64, and never more.
@@ -21,12 +23,17 @@ pub struct Limits {
     pub variants: usize,
     /// Bytes of one name; 128.
     pub name_bytes: usize,
+    /// Arcs between a prim and an opinion about it; 64.
+    pub arc_depth: usize,
+    /// Places that may have opinions about one prim; 100,000.
+    pub index_nodes: usize,
 }
 
 impl Default for Limits {
     fn default() -> Self {
         Self {
             file_bytes: 64 << 20,
+            layers: 1_000,
             prims: 1_000_000,
             prim_depth: DEEPEST,
             opinions: 10_000_000,
@@ -34,6 +41,8 @@ impl Default for Limits {
             samples: 1_000_000,
             variants: 1_000,
             name_bytes: 128,
+            arc_depth: 64,
+            index_nodes: 100_000,
         }
     }
 }
@@ -59,6 +68,8 @@ pub struct Options {
     /// Whether the files that fields name must exist. When off, [`AssetPath`](crate::AssetPath)
     /// keeps the text of the scene.
     pub check_assets: bool,
+    /// Whether the prims that fields of rendered prims point to must exist.
+    pub check_targets: bool,
     /// What a scene may need at most.
     pub limits: Limits,
 }
@@ -72,6 +83,7 @@ impl Default for Options {
             frame: None,
             load_payloads: true,
             check_assets: true,
+            check_targets: true,
             limits: Limits::default(),
         }
     }

@@ -8,6 +8,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bevy_reflect::{FromReflect, PartialReflect, Reflect, ReflectFromReflect, ReflectMut};
 
 use crate::asset::{self, Folders};
+use crate::compose::ArcKind;
 use crate::diagnostic::Diagnostic;
 use crate::layer::{Specifier, TimeSettings};
 use crate::sample;
@@ -72,6 +73,38 @@ pub struct Prim {
     pub components: Vec<ComponentValue>,
     /// Components that have opinions but were removed by `without`.
     pub removed: Vec<ComponentValue>,
+    /// Its sets of variants.
+    pub variants: Vec<VariantChoice>,
+    /// The places that have opinions about it, and those through which they are reached, strong to
+    /// weak.
+    pub contributors: Vec<Contributor>,
+}
+
+/// A set of variants of a prim.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VariantChoice {
+    /// Its name.
+    pub set: String,
+    /// The variant that is in force, if one is selected.
+    pub chosen: Option<String>,
+    /// All that can be selected.
+    pub variants: Vec<String>,
+}
+
+/// A place that may have opinions about a prim, with the arc that brings them: a node of the prim's
+/// tree of arcs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contributor {
+    /// The prim there; in the body of a variant `/World/Ring{metal=gold}Stone`.
+    pub path: String,
+    /// What brings its opinions.
+    pub arc: ArcKind,
+    /// Where the arc is written; for a variant where it is selected. None for the prim itself.
+    pub arc_place: Option<Place>,
+    /// The place that the arc starts from, as a position in [`Prim::contributors`].
+    pub parent: Option<u32>,
+    /// Names in the path of the prim that the arc is written on.
+    pub(crate) depth: u16,
 }
 
 impl Prim {
@@ -168,10 +201,8 @@ pub enum FieldState {
 pub struct Opinion {
     /// The value.
     pub place: Place,
-    /// The prim in the namespace of that text.
-    pub prim: String,
-    /// Whether it comes from the command line.
-    pub session: bool,
+    /// Whose opinion it is, as a position in [`Prim::contributors`].
+    pub contributor: u32,
 }
 
 /// A value that is there already or was made between two samples.
@@ -209,6 +240,18 @@ impl FieldValue {
     /// Gives the value at `time` as a `T`; none if the default holds, or if it is no `T`.
     pub fn get_at<T: FromReflect>(&self, time: f64) -> Option<T> {
         T::from_reflect(self.at(time)?.get())
+    }
+
+    /// Whether the field points to prims, so that lists of targets are combined from all opinions.
+    pub fn is_relationship(&self) -> bool {
+        use crate::relation::{Target, Targets};
+        [
+            TypeId::of::<Target>(),
+            TypeId::of::<Option<Target>>(),
+            TypeId::of::<Targets>(),
+            TypeId::of::<Option<Targets>>(),
+        ]
+        .contains(&self.type_id)
     }
 
     /// Gives the samples; none if the value does not change.

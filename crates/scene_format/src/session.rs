@@ -1,150 +1,346 @@
-//! What the command line says: opinions above all layers.
+//! What the command line says: a layer above all others.
 
 use std::cell::RefCell;
 
+use crate::compose::{Arcs, Composed, FlatLayer, LayerId, Library, PathId, Selection, Spec};
 use crate::diagnostic::{Diagnostic, Report, nearest};
-use crate::layer::FieldSpec;
+use crate::layer::{ComponentSpec, FieldSpec};
 use crate::lex;
-use crate::namespace::Namespace;
-use crate::options::Limits;
+use crate::options::Options;
+use crate::path::absolute_path_problem;
 use crate::read::{Reader, unknown_component, unknown_field};
+use crate::scene::Prim;
 use crate::schema::{ComponentInfo, Schema};
-use crate::source::{Place, SourceId, Sources};
+use crate::source::{Place, SourceId};
 
-/// One `--set`.
-#[derive(Debug)]
-pub(crate) struct SetOpinion {
-    /// Position in the namespace.
-    pub(crate) prim: usize,
-    /// Position in the schema.
-    pub(crate) component: usize,
-    pub(crate) field: FieldSpec,
+/// The arguments of a command line that change a scene.
+#[derive(Default)]
+pub(crate) struct Session {
+    variants: Vec<VariantArgument>,
+    sets: Vec<SetArgument>,
 }
 
-/// Checks one `--variant /Prim{set=variant}`, and refuses it, since variants are not composed yet.
-pub(crate) fn refuse_variant(text: &str, sources: &mut Sources, tree: &Namespace, report: &mut Report) {
-    let source = sources.add_argument("--variant", text);
-    let place = |part: &str| {
-        let start = (part.as_ptr() as usize - text.as_ptr() as usize) as u32;
-        Place {
-            source,
-            start,
-            end: start + part.len() as u32,
+/// `--variant /Prim{set=variant}`.
+struct VariantArgument {
+    prim: Word,
+    set: Word,
+    variant: Word,
+}
+
+/// `--set /Prim.Component.field=RON` or `--set /Prim.field=RON`.
+struct SetArgument {
+    source: SourceId,
+    prim: Word,
+    component: Option<Word>,
+    field: Word,
+    /// Where the value stands in the argument.
+    value: Place,
+}
+
+/// A part of an argument.
+struct Word {
+    text: String,
+    place: Place,
+}
+
+/// Splits the arguments; what is malformed is reported.
+pub(crate) fn read_session(library: &mut Library<'_, '_>, options: &Options) -> Session {
+    let mut session = Session::default();
+    for text in &options.variants {
+        let source = library.sources.add_argument("--variant", text);
+        match read_variant(text, source) {
+            Ok(argument) => session.variants.push(argument),
+            Err(error) => library.report.push(error),
         }
-    };
+    }
+    for text in &options.sets {
+        let source = library.sources.add_argument("--set", text);
+        match read_set(text, source) {
+            Ok(argument) => session.sets.push(argument),
+            Err(error) => library.report.push(error),
+        }
+    }
+    session
+}
+
+fn place_of(part: &str, whole: &str, source: SourceId) -> Place {
+    let start = (part.as_ptr() as usize - whole.as_ptr() as usize) as u32;
+    Place {
+        source,
+        start,
+        end: start + part.len() as u32,
+    }
+}
+
+fn read_variant(text: &str, source: SourceId) -> Result<VariantArgument, Diagnostic> {
     let choice = text
         .strip_suffix('}')
         .and_then(|rest| rest.split_once('{'))
         .and_then(|(path, choice)| Some((path, choice.split_once('=')?)));
-    let Some((path, (set, variant))) = choice else {
-        let message = "this must be `/Prim{set=variant}`";
-        return report.push(Diagnostic::error("bad-variant", message).at(place(text)));
+    let word = |part: &str| Word {
+        text: part.to_owned(),
+        place: place_of(part, text, source),
     };
-    let Some(prim) = tree.find(path) else {
-        return report.push(unknown_prim(path, tree).at(place(path)));
-    };
-    let body = &tree.entries[prim].body;
-    let sets = body.variants.as_ref().map_or(&[][..], |sets| &sets.value);
-    let Some(found) = sets.iter().find(|found| found.name.value == set) else {
-        let names = sets.iter().map(|found| found.name.value.as_str());
-        let message = format!("`{path}` has no set of variants `{set}`");
-        let error = Diagnostic::error("unknown-variant-set", message).suggest(nearest(set, names));
-        return report.push(error.at(place(set)));
-    };
-    let names = || found.variants.iter().map(|(name, _)| name.value.as_str());
-    if !names().any(|name| name == variant) {
-        let message = format!("the set `{set}` of `{path}` has no variant `{variant}`");
-        let listed: Vec<&str> = names().collect();
-        let error = Diagnostic::error("unknown-variant", message)
-            .suggest(nearest(variant, names()))
-            .note(format!("variants of {set}: {}", listed.join(", ")));
-        return report.push(error.at(place(variant)));
+    match choice {
+        Some((prim, (set, variant))) => Ok(VariantArgument {
+            prim: word(prim),
+            set: word(set),
+            variant: word(variant),
+        }),
+        None => {
+            let message = "this must be `/Prim{set=variant}`";
+            Err(Diagnostic::error("bad-variant", message).at(place_of(text, text, source)))
+        }
     }
-    let message = "variants cannot be composed yet";
-    report.push(Diagnostic::error("not-supported-yet", message).at(place(text)));
 }
 
-fn unknown_prim(path: &str, tree: &Namespace) -> Diagnostic {
-    Diagnostic::error("unknown-prim", format!("there is no prim `{path}`")).suggest(tree.nearest_path(path))
-}
-
-/// Reads one `--set /Prim.Component.field=RON` or `--set /Prim.field=RON`, which is in `sources`.
-/// What is wrong is reported.
-pub(crate) fn read_set(
-    sources: &Sources,
-    source: SourceId,
-    tree: &Namespace,
-    schema: &Schema<'_>,
-    limits: &Limits,
-    report: &RefCell<Report>,
-) -> Option<SetOpinion> {
-    let text = &sources.get(source)?.text;
-    let reader = Reader::new(schema, limits, source, text, report);
-    let fail = |error: Diagnostic, at: &str| {
-        reader.report(error.at(reader.place(at)));
-        None
-    };
-    let malformed = |at: &str| {
+fn read_set(text: &str, source: SourceId) -> Result<SetArgument, Diagnostic> {
+    let place = |part: &str| place_of(part, text, source);
+    let malformed = |part: &str| {
         let message = "this must be `/Prim.Component.field=value` or `/Prim.field=value`";
-        fail(Diagnostic::error("bad-set", message), at)
+        Diagnostic::error("bad-set", message).at(place(part))
     };
-    let Some((left, right)) = text.split_once('=') else {
-        return malformed(text);
-    };
+    let (left, right) = text.split_once('=').ok_or_else(|| malformed(text))?;
     let words: Vec<&str> = left.trim().split('.').collect();
-    let (path, component, field) = match words[..] {
-        [path, field] => (path, None, field),
-        [path, component, field] => (path, Some(component), field),
-        _ => return malformed(left),
-    };
-    let Some(prim) = tree.find(path) else {
-        return fail(unknown_prim(path, tree), path);
-    };
-    let found = match component {
-        Some(name) => schema
-            .index_of(name)
-            .ok_or_else(|| (unknown_component(schema, name), name)),
-        None => component_with(field, prim, tree, schema).map_err(|error| (error, field)),
-    };
-    let component = match found {
-        Ok(component) => component,
-        Err((error, at)) => return fail(error, at),
-    };
-    let info = &schema.components()[component];
-    let Some(field_info) = info.field(field) else {
-        return fail(unknown_field(info, field), field);
+    let (prim, component, field) = match words[..] {
+        [prim, field] => (prim, None, field),
+        [prim, component, field] => (prim, Some(component), field),
+        _ => return Err(malformed(left)),
     };
     let raw = &right[lex::trim(right)];
     if raw.is_empty() {
-        return fail(Diagnostic::error("bad-set", "there is no value after `=`"), right);
+        return Err(Diagnostic::error("bad-set", "there is no value after `=`").at(place(right)));
     }
-    let opinion = reader.field_value(info.name, field_info, raw)?;
-    Some(SetOpinion {
-        prim,
-        component,
-        field: FieldSpec {
-            index: field_info.index,
-            place: reader.place(raw),
-            opinion,
-        },
+    let word = |part: &str| Word {
+        text: part.to_owned(),
+        place: place(part),
+    };
+    Ok(SetArgument {
+        source,
+        prim: word(prim),
+        component: component.map(word),
+        field: word(field),
+        value: place(raw),
     })
 }
 
+impl Session {
+    pub(crate) fn is_empty(&self) -> bool {
+        self.variants.is_empty() && self.sets.is_empty()
+    }
+
+    /// Whether an argument leaves the component to be found, for which the scene has to be composed
+    /// once without it.
+    pub(crate) fn has_short_sets(&self) -> bool {
+        self.sets.iter().any(|set| set.component.is_none())
+    }
+
+    /// Makes the layer of the arguments.
+    ///
+    /// - `found`: the scene without short arguments; none leaves them out.
+    pub(crate) fn layer(&self, library: &mut Library<'_, '_>, found: Option<&Composed>) -> LayerId {
+        let source = library.sources.add_argument("", "");
+        let mut layer = FlatLayer {
+            source,
+            default_prim: None,
+            time: None,
+            sublayers: Vec::new(),
+            specs: vec![Spec::new(PathId::ROOT, None)],
+            is_session: true,
+        };
+        for argument in &self.variants {
+            let Some(path) = prim_path(&argument.prim, library) else {
+                continue;
+            };
+            let selection = Selection {
+                set: library.paths.word(&argument.set.text),
+                variant: Some(library.paths.word(&argument.variant.text)),
+                place: argument.variant.place,
+            };
+            let spec = spec_at(&mut layer, path, library);
+            let arcs: &mut Arcs = spec.arcs.get_or_insert_default();
+            // A later argument wins.
+            arcs.select.retain(|other| other.set != selection.set);
+            arcs.select.push(selection);
+        }
+        for argument in &self.sets {
+            if argument.component.is_none() && found.is_none() {
+                continue;
+            }
+            let Some(path) = prim_path(&argument.prim, library) else {
+                continue;
+            };
+            if let Some((component, field)) = argument.opinion(library, found) {
+                let spec = spec_at(&mut layer, path, library);
+                add_opinion(spec, component, argument.field.place, field);
+            }
+        }
+        library.add_layer(layer)
+    }
+
+    /// Reports arguments about prims and sets that the scene does not have.
+    pub(crate) fn check(&self, composed: &Composed, report: &mut Report) {
+        let prims = self.variants.iter().map(|argument| &argument.prim);
+        for word in prims.chain(self.sets.iter().map(|argument| &argument.prim)) {
+            if !composed.index.contains_key(&word.text) {
+                let message = format!("there is no prim `{}`", word.text);
+                let names = composed.index.keys().map(String::as_str);
+                let error = Diagnostic::error("unknown-prim", message).suggest(nearest(&word.text, names));
+                report.push(error.at(word.place));
+            }
+        }
+        for argument in &self.variants {
+            if let Some(&prim) = composed.index.get(&argument.prim.text) {
+                argument.check_set(&composed.prims[prim], report);
+            }
+        }
+    }
+}
+
+impl VariantArgument {
+    fn check_set(&self, prim: &Prim, report: &mut Report) {
+        let (path, set) = (&prim.path, &self.set.text);
+        let Some(found) = prim.variants.iter().find(|choice| choice.set == *set) else {
+            let names = || prim.variants.iter().map(|choice| choice.set.as_str());
+            let message = format!("`{path}` has no set of variants `{set}`");
+            let mut error = Diagnostic::error("unknown-variant-set", message).suggest(nearest(set, names()));
+            if error.suggestion.is_none() && !prim.variants.is_empty() {
+                let listed: Vec<&str> = names().collect();
+                error = error.note(format!("sets of {path}: {}", listed.join(", ")));
+            }
+            return report.push(error.at(self.set.place));
+        };
+        if !found.variants.contains(&self.variant.text) {
+            let variant = &self.variant.text;
+            let names = found.variants.iter().map(String::as_str);
+            let message = format!("the set `{set}` of `{path}` has no variant `{variant}`");
+            let error = Diagnostic::error("unknown-variant", message)
+                .suggest(nearest(variant, names))
+                .note(format!("variants of {set}: {}", found.variants.join(", ")));
+            report.push_once(error.at(self.variant.place));
+        }
+    }
+}
+
+/// Gives the number of a prim's path; none for a text that is no path, which no prim has.
+fn prim_path(word: &Word, library: &mut Library<'_, '_>) -> Option<PathId> {
+    if absolute_path_problem(&word.text, library.limits.name_bytes).is_some() {
+        return None;
+    }
+    Some(library.paths.intern(&word.text))
+}
+
+/// Finds or adds the spec of a prim, and specs of those above it. They do not bring prims into being:
+/// nobody lists them as children.
+fn spec_at<'s>(layer: &'s mut FlatLayer, path: PathId, library: &Library<'_, '_>) -> &'s mut Spec {
+    let mut missing = path;
+    while !layer.specs.iter().any(|spec| spec.path == missing) {
+        layer
+            .specs
+            .push(Spec::new(missing, Some(crate::layer::Specifier::Over)));
+        missing = library.paths.parent(missing);
+    }
+    let at = layer.specs.iter().position(|spec| spec.path == path);
+    &mut layer.specs[at.expect("it was just added")]
+}
+
+/// Adds an opinion to a spec; an earlier one about the same field is replaced.
+fn add_opinion(spec: &mut Spec, component: usize, place: Place, field: FieldSpec) {
+    let at = match spec.components.iter().position(|known| known.index == component) {
+        Some(at) => at,
+        None => {
+            spec.components.push(ComponentSpec {
+                index: component,
+                place,
+                fields: Vec::new(),
+            });
+            spec.components.len() - 1
+        }
+    };
+    let fields = &mut spec.components[at].fields;
+    fields.retain(|known| known.index != field.index);
+    fields.push(field);
+}
+
+impl SetArgument {
+    /// Reads the value; gives it with the component's position in the schema. What is wrong is
+    /// reported, once.
+    fn opinion(&self, library: &mut Library<'_, '_>, found: Option<&Composed>) -> Option<(usize, FieldSpec)> {
+        let schema = library.schema;
+        let component = match &self.component {
+            Some(name) => schema
+                .index_of(&name.text)
+                .ok_or_else(|| unknown_component(schema, &name.text).at(name.place)),
+            None => {
+                let composed = found?;
+                let prim = &composed.prims[*composed.index.get(&self.prim.text)?];
+                component_with(&self.field.text, prim, schema).map_err(|error| error.at(self.field.place))
+            }
+        };
+        let component = match component {
+            Ok(component) => component,
+            Err(error) => {
+                library.report.push_once(error);
+                return None;
+            }
+        };
+        let info = &schema.components()[component];
+        let Some(field) = info.field(&self.field.text) else {
+            let error = unknown_field(info, &self.field.text).at(self.field.place);
+            library.report.push_once(error);
+            return None;
+        };
+        let source = std::sync::Arc::clone(library.sources.get(self.source)?);
+        let raw = &source.text[self.value.start as usize..self.value.end as usize];
+        let report = RefCell::new(Report::default());
+        let reader = Reader::new(schema, library.limits, self.source, &source.text, &report);
+        let opinion = reader.field_value(info.name, field, raw);
+        for error in report.into_inner().errors {
+            library.report.push_once(error);
+        }
+        let mut opinion = opinion?;
+        if let crate::layer::FieldOpinion::Targets(edit) = &mut opinion {
+            *edit = edit.filter_map(|item| {
+                let resolved = crate::path::resolve_target(&item.value, &self.prim.text, library.limits.name_bytes);
+                match resolved {
+                    Ok(value) => Some(crate::layer::Spanned {
+                        value,
+                        place: item.place,
+                    }),
+                    Err(problem) => {
+                        let error = Diagnostic::error("bad-path", problem).at(item.place);
+                        library.report.push_once(error);
+                        None
+                    }
+                }
+            });
+        }
+        let field = FieldSpec {
+            index: field.index,
+            place: self.value,
+            opinion,
+        };
+        Some((component, field))
+    }
+}
+
 /// Finds the one component of a prim that has such a field.
-fn component_with(field: &str, prim: usize, tree: &Namespace, schema: &Schema<'_>) -> Result<usize, Diagnostic> {
-    let entry = &tree.entries[prim];
-    let mut mentioned: Vec<usize> = entry.body.components.iter().map(|spec| spec.index).collect();
-    mentioned.sort_unstable();
+fn component_with(field: &str, prim: &Prim, schema: &Schema<'_>) -> Result<usize, Diagnostic> {
+    let mentioned: Vec<usize> = prim
+        .components
+        .iter()
+        .filter_map(|component| schema.index_of(component.name))
+        .collect();
     let info = |index: &usize| -> &ComponentInfo { &schema.components()[*index] };
     let with: Vec<usize> = mentioned
         .iter()
         .copied()
         .filter(|index| info(index).field(field).is_some())
         .collect();
+    let path = &prim.path;
     match with[..] {
         [one] => Ok(one),
         [] => {
-            let path = &entry.path;
             let fields = mentioned
                 .iter()
                 .flat_map(|index| info(index).fields.iter().map(|field| field.name));
@@ -160,7 +356,6 @@ fn component_with(field: &str, prim: usize, tree: &Namespace, schema: &Schema<'_
                 .note(note))
         }
         _ => {
-            let path = &entry.path;
             let choices: Vec<String> = with
                 .iter()
                 .map(|index| format!("{path}.{}.{field}", info(index).name))

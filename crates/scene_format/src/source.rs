@@ -30,17 +30,28 @@ pub(crate) enum Origin {
     Argument,
 }
 
+/// Why a file was read: who names it, and as what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Reached {
+    /// The name, in the file that names it.
+    pub(crate) place: Place,
+    /// `sublayers`, `references` or `payloads`.
+    pub(crate) word: &'static str,
+}
+
 /// One text with its name and its line starts.
 #[derive(Debug)]
 pub(crate) struct Source {
     pub(crate) name: String,
     pub(crate) text: String,
     pub(crate) origin: Origin,
+    /// None for the first file.
+    pub(crate) reached: Option<Reached>,
     line_starts: Vec<u32>,
 }
 
 impl Source {
-    fn new(name: String, text: String, origin: Origin) -> Self {
+    fn new(name: String, text: String, origin: Origin, reached: Option<Reached>) -> Self {
         let mut line_starts = vec![0];
         line_starts.extend(
             text.bytes()
@@ -52,6 +63,7 @@ impl Source {
             name,
             text,
             origin,
+            reached,
             line_starts,
         }
     }
@@ -105,16 +117,33 @@ pub struct Sources {
 }
 
 impl Sources {
-    pub(crate) fn add_file(&mut self, name: &str, folder: &Path, text: String) -> SourceId {
+    /// Adds a file; other files that it names are relative to `folder`.
+    pub(crate) fn add_file(&mut self, name: &str, folder: &Path, text: String, reached: Option<Reached>) -> SourceId {
         let origin = Origin::File {
             folder: folder.to_path_buf(),
         };
-        self.add(Source::new(name.to_owned(), text, origin))
+        self.add(Source::new(name.to_owned(), text, origin, reached))
+    }
+
+    /// Gives the name to show for a file that another one names as `written`: beside that one.
+    pub(crate) fn shown_beside(&self, naming: SourceId, written: &str) -> String {
+        let mut parts: Vec<&str> = self.name(naming).split('/').collect();
+        parts.pop();
+        for part in written.split('/') {
+            match part {
+                "." => {}
+                ".." if parts.last().is_some_and(|last| !matches!(*last, ".." | "." | "")) => {
+                    parts.pop();
+                }
+                part => parts.push(part),
+            }
+        }
+        parts.join("/")
     }
 
     /// Adds an argument such as `/W.Camera.fov=35` given to `flag`.
     pub(crate) fn add_argument(&mut self, flag: &str, text: &str) -> SourceId {
-        self.add(Source::new(flag.to_owned(), text.to_owned(), Origin::Argument))
+        self.add(Source::new(flag.to_owned(), text.to_owned(), Origin::Argument, None))
     }
 
     fn add(&mut self, source: Source) -> SourceId {
@@ -129,6 +158,11 @@ impl Sources {
     /// Gives the name of a text as it is shown to people: a file name, or the flag of an argument.
     pub fn name(&self, id: SourceId) -> &str {
         self.get(id).map_or("", |source| &source.name)
+    }
+
+    /// Whether a text is an argument of the command line.
+    pub fn is_argument(&self, id: SourceId) -> bool {
+        self.get(id).is_some_and(|source| source.origin == Origin::Argument)
     }
 
     /// Gives line and column, both counted from 1, the column in characters.

@@ -40,7 +40,7 @@ fn check_required(component: &ComponentValue, info: &ComponentInfo, report: &mut
     for field in info.fields.iter().filter(|field| field.required) {
         if written(component, field.name).is_none() {
             let message = format!("`{}` needs the field `{}`", info.name, field.name);
-            report.push(
+            report.push_once(
                 Diagnostic::error("missing-field", message)
                     .at(component.place)
                     .note(format!("pipeline schema {}", info.name)),
@@ -70,7 +70,7 @@ fn check_exclusive(component: &ComponentValue, info: &ComponentInfo, complete: b
             reported.push((exclusive.group, side));
             let name = info.name;
             let message = format!("`{name}` cannot have both `{}` and `{}`", first.name, field.name);
-            report.push(
+            report.push_once(
                 Diagnostic::error("exclusive-fields", message)
                     .at(value.place)
                     .also(first.place, format!("`{}` is written", first.name))
@@ -102,7 +102,7 @@ fn check_sides(
             && written(component, field.name).is_none()
         {
             let message = format!("`{}` needs `{}` too", first.name, field.name);
-            report.push(Diagnostic::error("missing-field", message).at(first.place));
+            report.push_once(Diagnostic::error("missing-field", message).at(first.place));
         }
     }
 }
@@ -113,7 +113,7 @@ pub(crate) fn check_targets(composed: &Composed, report: &mut Report) {
         if !composed.index.contains_key(path) {
             let message = format!("there is no prim `{path}`");
             let names = composed.index.keys().map(String::as_str);
-            report.push(
+            report.push_once(
                 Diagnostic::error("unknown-target", message)
                     .at(*place)
                     .suggest(nearest(path, names)),
@@ -135,7 +135,7 @@ pub(crate) fn resolve_assets(
             for field in &mut component.fields {
                 let place = field.place;
                 let mut resolve = |path: &mut String| {
-                    resolve_one(path, place, sources, folders, &mut uses).unwrap_or_else(|error| report.push(error));
+                    resolve_one(path, place, sources, folders, &mut uses).unwrap_or_else(|error| report.push_once(error));
                 };
                 match &mut field.state {
                     FieldState::Constant(value) => each_asset(&mut **value, &mut resolve),

@@ -1,0 +1,355 @@
+//! The arcs that specs write: references, payloads, inherits, specializes.
+
+use std::collections::HashSet;
+use std::hash::Hash;
+
+use super::graph::{ArcKind, NewArc, NodeId, Site};
+use super::indexer::{ArcOptions, Composer, Indexer, new_arc};
+use super::library::{FileId, LayerId, Library, StackId};
+use super::mapping::{PathMap, TimeMap};
+use super::paths::{PathId, Step, Word};
+use super::spec::{Arcs, AssetRef};
+use crate::diagnostic::Diagnostic;
+use crate::layer::{ListEdit, Spanned};
+use crate::source::Place;
+
+/// Which of the two lists of files and prims.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AssetArcKind {
+    References,
+    Payloads,
+}
+
+impl AssetArcKind {
+    fn kind(self) -> ArcKind {
+        match self {
+            Self::References => ArcKind::References,
+            Self::Payloads => ArcKind::Payloads,
+        }
+    }
+
+    fn list(self, arcs: &Arcs) -> Option<&ListEdit<AssetRef>> {
+        match self {
+            Self::References => arcs.references.as_ref(),
+            Self::Payloads => arcs.payloads.as_ref(),
+        }
+    }
+}
+
+/// Which kinds of arcs the specs of a site write.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct WrittenArcs {
+    pub(crate) references: bool,
+    pub(crate) payloads: bool,
+    pub(crate) inherits: bool,
+    pub(crate) specializes: bool,
+    pub(crate) variants: bool,
+}
+
+impl Library<'_, '_> {
+    /// Tells which kinds of arcs a site has.
+    pub(crate) fn written_arcs(&self, site: Site) -> WrittenArcs {
+        let mut found = WrittenArcs::default();
+        for (_, _, spec) in self.specs(site.stack, site.path) {
+            if let Some(arcs) = &spec.arcs {
+                found.references |= arcs.references.is_some();
+                found.payloads |= arcs.payloads.is_some();
+                found.inherits |= arcs.inherits.is_some();
+                found.specializes |= arcs.specializes.is_some();
+                found.variants |= !arcs.sets.is_empty();
+            }
+        }
+        found
+    }
+
+    /// Lists the sets of variants of a site; those of a stronger layer come first.
+    pub(crate) fn variant_sets(&self, site: Site) -> Vec<Word> {
+        let mut list: Vec<Word> = Vec::new();
+        for (_, _, spec) in self.specs(site.stack, site.path) {
+            let sets = spec.arcs.as_ref().map_or(&[][..], |arcs| &arcs.sets);
+            for set in sets {
+                if !list.contains(&set.name) {
+                    list.push(set.name);
+                }
+            }
+        }
+        list
+    }
+
+    /// Lists the prims at the top level of a stack.
+    pub(crate) fn top_level_prims(&self, stack: StackId) -> Vec<String> {
+        let specs = self.specs(stack, PathId::ROOT);
+        let names = specs.flat_map(|(_, _, spec)| &spec.children);
+        let mut list: Vec<String> = Vec::new();
+        for name in names.take(8) {
+            let text = format!("/{}", self.paths.word_text(*name));
+            if !list.contains(&text) {
+                list.push(text);
+            }
+        }
+        list
+    }
+
+    /// Combines the list edits of a site's layers, weak to strong. The time of a layer is applied to
+    /// the files that it names; what stays in the layer stack has the times of its layers already.
+    fn asset_list(&mut self, site: Site, which: AssetArcKind) -> Vec<AssetRef> {
+        let edits: Vec<ListEdit<AssetRef>> = self
+            .specs(site.stack, site.path)
+            .filter_map(|(_, time, spec)| {
+                let edit = which.list(spec.arcs.as_deref()?)?;
+                Some(edit.filter_map(|asset| {
+                    let mut asset = asset.clone();
+                    if asset.file.is_some() {
+                        asset.time = time.after(asset.time);
+                    }
+                    Some(asset)
+                }))
+            })
+            .collect();
+        let keyed: Vec<ListEdit<(Option<FileId>, AssetRef)>> = edits
+            .iter()
+            .map(|edit| edit.filter_map(|asset| Some((self.locate(asset), asset.clone()))))
+            .collect();
+        let list = combine(&keyed, |(file, asset)| (*file, asset.prim));
+        for (place, text) in list.without_effect(|(_, asset)| asset.place) {
+            self.warn_edit(place, text);
+        }
+        list.items.into_iter().map(|(_, asset)| asset).collect()
+    }
+
+    fn class_list(&mut self, site: Site, kind: ArcKind) -> Vec<Spanned<PathId>> {
+        let edits: Vec<ListEdit<Spanned<PathId>>> = self
+            .specs(site.stack, site.path)
+            .filter_map(|(_, _, spec)| {
+                let arcs = spec.arcs.as_deref()?;
+                match kind {
+                    ArcKind::Inherits => arcs.inherits.clone(),
+                    _ => arcs.specializes.clone(),
+                }
+            })
+            .collect();
+        let list = combine(&edits, |item| item.value);
+        for (place, text) in list.without_effect(|item| item.place) {
+            self.warn_edit(place, text);
+        }
+        list.items
+    }
+
+    fn warn_edit(&mut self, place: Place, code: EditTrouble) {
+        let name = self.sources.text(place).to_owned();
+        let warning = code.warning(&name);
+        self.report.push_once(warning.at(place));
+    }
+
+    /// The prim that a file means where none is named.
+    fn default_prim(&self, layer: LayerId) -> Option<PathId> {
+        self.layer(layer).default_prim.as_ref().map(|name| name.value)
+    }
+}
+
+/// A list that several opinions made.
+pub(crate) struct Combined<T> {
+    pub(crate) items: Vec<T>,
+    /// Items of `delete` that were not there.
+    idle_deletes: Vec<T>,
+    /// Items that a stronger plain list replaces.
+    dropped: Vec<T>,
+}
+
+/// What is odd about an edit of a list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum EditTrouble {
+    IdleDelete,
+    Dropped,
+}
+
+impl EditTrouble {
+    pub(crate) fn warning(self, name: &str) -> Diagnostic {
+        match self {
+            Self::IdleDelete => {
+                Diagnostic::warning("delete-without-effect", format!("there is no `{name}` here to be deleted"))
+                    .note("`delete` removes what weaker layers of the same file list, not what comes through an arc")
+            }
+            Self::Dropped => Diagnostic::warning("list-drops-items", format!("a plain list in a stronger layer drops `{name}`"))
+                .note("a plain list replaces what is weaker; `Edit(prepend: ..)` adds to it"),
+        }
+    }
+}
+
+impl<T> Combined<T> {
+    /// Lists what deserves a warning, with its place.
+    pub(crate) fn without_effect(&self, place: impl Fn(&T) -> Place) -> Vec<(Place, EditTrouble)> {
+        let idle = self.idle_deletes.iter().map(|item| (place(item), EditTrouble::IdleDelete));
+        let dropped = self.dropped.iter().map(|item| (place(item), EditTrouble::Dropped));
+        idle.chain(dropped).collect()
+    }
+}
+
+/// Combines opinions about a list, given strong to weak; items with one `key` are one.
+pub(crate) fn combine<T: Clone, K: Eq + Hash>(
+    edits: &[ListEdit<T>],
+    key: impl Fn(&T) -> K,
+) -> Combined<T> {
+    let mut combined = Combined {
+        items: Vec::new(),
+        idle_deletes: Vec::new(),
+        dropped: Vec::new(),
+    };
+    for edit in edits.iter().rev() {
+        let before: HashSet<K> = combined.items.iter().map(&key).collect();
+        match edit {
+            ListEdit::Explicit(items) if !items.is_empty() && !combined.items.is_empty() => {
+                let now: HashSet<K> = items.iter().map(&key).collect();
+                let lost = combined.items.iter().filter(|item| !now.contains(&key(item)));
+                combined.dropped.extend(lost.cloned());
+            }
+            ListEdit::Edit { delete, .. } => {
+                let idle = delete.iter().filter(|item| !before.contains(&key(item)));
+                combined.idle_deletes.extend(idle.cloned());
+            }
+            ListEdit::Explicit(_) => {}
+        }
+        edit.apply(&mut combined.items, &key);
+    }
+    combined
+}
+
+impl Indexer<'_> {
+    /// Follows the references or payloads that a node writes.
+    pub(crate) fn add_asset_arcs(&mut self, composer: &mut Composer<'_, '_, '_>, node: NodeId, which: AssetArcKind) {
+        let found = self.graph.node(node);
+        if !found.contributes() {
+            return;
+        }
+        // An arc to a prim below the top level needs the payloads above its target to find it.
+        let above_target = self.frame.is_some_and(|frame| frame.is_above_target(self.graph.root().site));
+        if which == AssetArcKind::Payloads && !composer.load_payloads && !above_target {
+            return;
+        }
+        let site = found.site;
+        for (position, asset) in composer.library.asset_list(site, which).into_iter().enumerate() {
+            if let Some((target, arc)) = self.asset_arc(composer, node, which, position as u32, &asset) {
+                let options = ArcOptions {
+                    with_ancestors: !composer.library.paths.is_top_level_prim(target.path),
+                    ..ArcOptions::default()
+                };
+                self.add_arc(composer, target, &arc, options);
+            }
+        }
+    }
+
+    /// Finds what a reference or payload targets; what is wrong is reported.
+    fn asset_arc(
+        &self,
+        composer: &mut Composer<'_, '_, '_>,
+        node: NodeId,
+        which: AssetArcKind,
+        position: u32,
+        asset: &AssetRef,
+    ) -> Option<(Site, NewArc)> {
+        let kind = which.kind();
+        let site = self.graph.node(node).site;
+        let library = &mut *composer.library;
+        let (stack, layer) = if asset.file.is_some() {
+            let layer = library.open(asset, kind.word())?;
+            (library.stack_of(layer), layer)
+        } else {
+            // The last layer that is not the command line's is the first of the stack.
+            let layers = &library.stack(site.stack).layers;
+            let first = layers.iter().find(|(layer, _)| !library.layer(*layer).is_session);
+            (site.stack, first?.0)
+        };
+        let owner = library.paths.without_variants(site.path);
+        let depth = library.paths.depth(site.path);
+        let target = asset.prim.or_else(|| library.default_prim(layer));
+        let inside = asset.file.is_none();
+        let map = |path| PathMap::subtree(path, owner, inside, asset.time);
+        let Some(path) = target else {
+            let name = library.sources.name(library.layer(layer).source).to_owned();
+            let message = format!("`{name}` has no `default_prim`, so a prim has to be named");
+            let error = Diagnostic::error("missing-prim", message);
+            let error = self.suggest_prims(composer, stack, error);
+            let arc = new_arc(kind, node, node, map(PathId::ROOT), position, depth, Some(asset.place));
+            self.report_at(composer, error, &arc, true);
+            return None;
+        };
+        let arc = new_arc(kind, node, node, map(path), position, depth, Some(asset.place));
+        if !asset.time.is_sound() {
+            let message = "the offsets up to here add up to a time that is too large";
+            self.report_at(composer, Diagnostic::error("bad-layer-offset", message), &arc, true);
+            return None;
+        }
+        Some((Site { stack, path }, arc))
+    }
+
+    fn suggest_prims(&self, composer: &Composer<'_, '_, '_>, stack: StackId, error: Diagnostic) -> Diagnostic {
+        let names = composer.library.top_level_prims(stack);
+        match names.first() {
+            Some(first) => error.note(format!("its prims: {}; write `#{first}` behind the file's name", names.join(", "))),
+            None => error.note("it has no prims"),
+        }
+    }
+
+    /// Follows the classes or bases that a node writes.
+    pub(crate) fn add_written_classes(&mut self, composer: &mut Composer<'_, '_, '_>, node: NodeId, kind: ArcKind) {
+        let found = self.graph.node(node);
+        if !found.contributes() {
+            return;
+        }
+        let site = found.site;
+        let owner = composer.library.paths.without_variants(site.path);
+        for (position, class) in composer.library.class_list(site, kind).into_iter().enumerate() {
+            let map = PathMap::subtree(class.value, owner, true, TimeMap::IDENTITY);
+            let depth = composer.library.paths.depth(site.path);
+            let arc = new_arc(kind, node, node, map, position as u32, depth, Some(class.place));
+            self.add_class(composer, &arc, None);
+        }
+    }
+
+    /// Adds a class below a node; gives the node of the class, new or there before.
+    ///
+    /// - `source`: site of the class that implies this one; where both are the same, the new node is
+    ///   a placeholder without opinions.
+    pub(crate) fn add_class(
+        &mut self,
+        composer: &mut Composer<'_, '_, '_>,
+        arc: &NewArc,
+        source: Option<Site>,
+    ) -> Option<NodeId> {
+        let instance = self.graph.node(arc.parent).site;
+        let path = class_path(composer, instance.path, &arc.map)?;
+        let site = Site {
+            stack: instance.stack,
+            path,
+        };
+        let children = &self.graph.node(arc.parent).children;
+        if let Some(&known) = children.iter().find(|&&child| self.graph.node(child).site == site) {
+            return Some(known);
+        }
+        let counts = path != instance.path && source != Some(site);
+        let options = ArcOptions {
+            inert: !counts,
+            skip_duplicates: counts,
+            with_ancestors: counts && !composer.library.paths.is_top_level_prim(path),
+            ..ArcOptions::default()
+        };
+        self.add_arc(composer, site, arc, options)
+    }
+}
+
+/// Finds the path that an instance takes opinions from through a class map; of an instance in a
+/// variant, the class is looked for in the same variant if it lies below its prim.
+fn class_path(composer: &mut Composer<'_, '_, '_>, instance: PathId, map: &PathMap) -> Option<PathId> {
+    let paths = &mut composer.library.paths;
+    if !paths.is_in_variant(instance) {
+        return map.to_source(instance, paths);
+    }
+    let mut body = instance;
+    while !matches!(paths.step(body), Step::Variant { .. }) {
+        body = paths.parent(body);
+    }
+    let plain = paths.without_variants(instance);
+    let class = map.to_source(plain, paths)?;
+    let prim = paths.without_variants(body);
+    Some(paths.replace_prefix(class, prim, body))
+}

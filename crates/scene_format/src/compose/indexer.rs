@@ -1,0 +1,524 @@
+//! Builds the tree of one prim: the work list of LIVRPS.
+//!
+//! The algorithm is that of OpenUSD's prim indexing, so that ties fall as they do there: the tree of
+//! the parent with one more name, then arcs in the order references, payloads, inherits, implied
+//! classes, specializes, implied bases, variants. Each new node brings tasks of its own.
+
+use std::collections::BTreeSet;
+use std::rc::Rc;
+
+use super::arcs::AssetArcKind;
+use super::graph::{ArcKind, Graph, NewArc, NodeId, Site};
+use super::library::Library;
+use super::mapping::PathMap;
+use super::paths::{Step, Word};
+use crate::diagnostic::Diagnostic;
+use crate::source::Place;
+
+/// Steps of searches for variants that one prim may take.
+const MOST_WORK: usize = 100_000_000;
+
+/// What all trees of a scene share while they are built.
+pub(crate) struct Composer<'l, 'a, 'r> {
+    pub(crate) library: &'l mut Library<'a, 'r>,
+    pub(crate) load_payloads: bool,
+    /// Nodes made for the prim in work, those of trees within its tree too.
+    pub(crate) nodes: usize,
+    /// Steps of searches for variants, which bound the time that hostile files can take.
+    pub(crate) work: usize,
+}
+
+/// The tree around the one that is built for an arc's target.
+pub(crate) struct Frame<'f> {
+    /// What the arc targets; the tree begins above it in the namespace and grows towards it.
+    requested: Site,
+    parent: NodeId,
+    arc: &'f NewArc,
+    skip_duplicates: bool,
+    graph: &'f Graph,
+    previous: Option<&'f Frame<'f>>,
+}
+
+/// How a tree is to be built.
+#[derive(Clone, Copy)]
+pub(crate) struct BuildOptions {
+    /// How many names this tree is above the one that was asked for.
+    pub(crate) ancestor_levels: u16,
+    pub(crate) imply_bases: bool,
+    pub(crate) choose_variants: bool,
+    pub(crate) root_contributes: bool,
+}
+
+impl BuildOptions {
+    /// For a prim of the scene.
+    pub(crate) const WHOLE: Self = Self {
+        ancestor_levels: 0,
+        imply_bases: true,
+        choose_variants: true,
+        root_contributes: true,
+    };
+}
+
+/// What to do when an arc is added.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct ArcOptions {
+    pub(crate) inert: bool,
+    /// The target lies below the top level, so arcs of its ancestors bring opinions too.
+    pub(crate) with_ancestors: bool,
+    pub(crate) skip_duplicates: bool,
+    pub(crate) skip_implied_bases: bool,
+    pub(crate) skip_written_arcs: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct VariantTask {
+    pub(crate) node: NodeId,
+    pub(crate) set: Word,
+    pub(crate) position: u32,
+}
+
+/// What is left to do; fields in the order of urgency.
+#[derive(Default)]
+struct Tasks {
+    references: BTreeSet<NodeId>,
+    payloads: BTreeSet<NodeId>,
+    inherits: BTreeSet<NodeId>,
+    implied_classes: BTreeSet<NodeId>,
+    specializes: BTreeSet<NodeId>,
+    implied_bases: BTreeSet<NodeId>,
+    variant_sets: BTreeSet<NodeId>,
+    variants: Vec<VariantTask>,
+    /// Sets without a selection so far; a variant that is chosen may bring one.
+    unselected: Vec<VariantTask>,
+}
+
+/// One tree in the making.
+pub(crate) struct Indexer<'f> {
+    pub(crate) graph: Graph,
+    pub(crate) frame: Option<&'f Frame<'f>>,
+    pub(crate) options: BuildOptions,
+    /// The site of the tree's prim.
+    pub(crate) site: Site,
+    tasks: Tasks,
+}
+
+/// Builds the tree of a site. `parent` is the finished tree of the parent, if there is one.
+pub(crate) fn build_graph(
+    composer: &mut Composer<'_, '_, '_>,
+    site: Site,
+    options: BuildOptions,
+    parent: Option<&Graph>,
+    frame: Option<&Frame<'_>>,
+) -> Graph {
+    let mut graph = match composer.library.paths.step(site.path) {
+        Step::Root => return Graph::new(site, composer.library),
+        Step::Variant { .. } => Graph::new(site, composer.library),
+        Step::Child(name) => child_graph(composer, site, name, options, parent, frame),
+    };
+    graph.node_mut(NodeId::ROOT).inert |= !options.root_contributes;
+    composer.nodes += graph.len();
+    let mut indexer = Indexer {
+        graph,
+        frame,
+        options,
+        site,
+        tasks: Tasks::default(),
+    };
+    indexer.add_tasks_below(composer, NodeId::ROOT, ArcOptions::default());
+    indexer.run(composer);
+    indexer.graph
+}
+
+/// Makes the tree that a prim begins with from that of its parent.
+fn child_graph(
+    composer: &mut Composer<'_, '_, '_>,
+    site: Site,
+    name: Word,
+    options: BuildOptions,
+    parent: Option<&Graph>,
+    frame: Option<&Frame<'_>>,
+) -> Graph {
+    let built;
+    let parent = match parent {
+        Some(parent) => parent,
+        None => {
+            let above = Site {
+                path: composer.library.paths.parent(site.path),
+                ..site
+            };
+            let above_options = BuildOptions {
+                ancestor_levels: options.ancestor_levels + 1,
+                choose_variants: true,
+                root_contributes: true,
+                ..options
+            };
+            built = build_graph(composer, above, above_options, None, frame);
+            &built
+        }
+    };
+    let library = &mut *composer.library;
+    let mut paths = std::mem::take(&mut library.paths);
+    let mut graph = parent.for_child(name, &mut paths, |site| library.stack(site.stack).has_specs(site.path));
+    graph.cull(site.stack, &paths);
+    library.paths = paths;
+    graph
+}
+
+impl Indexer<'_> {
+    fn run(&mut self, composer: &mut Composer<'_, '_, '_>) {
+        loop {
+            if composer.nodes > composer.library.limits.index_nodes || composer.work > MOST_WORK {
+                return self.report_size(composer);
+            }
+            let tasks = &mut self.tasks;
+            if let Some(node) = tasks.references.pop_first() {
+                self.add_asset_arcs(composer, node, AssetArcKind::References);
+            } else if let Some(node) = tasks.payloads.pop_first() {
+                self.add_asset_arcs(composer, node, AssetArcKind::Payloads);
+            } else if let Some(node) = tasks.inherits.pop_first() {
+                self.add_written_classes(composer, node, ArcKind::Inherits);
+            } else if let Some(node) = tasks.implied_classes.pop_last() {
+                // Later nodes first: those below others before those above.
+                self.imply_classes(composer, node);
+            } else if let Some(node) = tasks.specializes.pop_first() {
+                self.add_written_classes(composer, node, ArcKind::Specializes);
+            } else if let Some(node) = tasks.implied_bases.pop_first() {
+                self.imply_bases(composer, node);
+            } else if let Some(node) = tasks.variant_sets.pop_first() {
+                self.add_variant_tasks(composer, node);
+            } else if !tasks.variants.is_empty() {
+                let task = self.strongest_variant_task(composer);
+                self.choose_variant(composer, task);
+            } else {
+                return;
+            }
+        }
+    }
+
+    fn report_size(&self, composer: &mut Composer<'_, '_, '_>) {
+        let library = &mut *composer.library;
+        let path = library.paths.text(self.site.path);
+        let message = format!(
+            "`{path}` is composed of more than {} places; do references double at every level?",
+            library.limits.index_nodes
+        );
+        let last = self.graph.node(NodeId(self.graph.len() as u32 - 1)).place;
+        let error = Diagnostic::error("index-too-large", message);
+        library.report.push_once(match last {
+            Some(place) => error.at(place),
+            None => error,
+        });
+    }
+
+    fn add_variant_tasks(&mut self, composer: &mut Composer<'_, '_, '_>, node: NodeId) {
+        if !self.graph.node(node).contributes() {
+            return;
+        }
+        let sets = composer.library.variant_sets(self.graph.node(node).site);
+        for (position, set) in sets.into_iter().enumerate() {
+            self.tasks.variants.push(VariantTask {
+                node,
+                set,
+                position: position as u32,
+            });
+        }
+    }
+
+    /// Takes the task of the strongest node, and of its strongest set.
+    fn strongest_variant_task(&mut self, composer: &mut Composer<'_, '_, '_>) -> VariantTask {
+        let tasks = &self.tasks.variants;
+        composer.work += tasks.len();
+        let mut best = 0;
+        for (number, task) in tasks.iter().enumerate().skip(1) {
+            let order = self.graph.compare_in_tree(task.node, tasks[best].node);
+            if order.then(task.position.cmp(&tasks[best].position)).is_lt() {
+                best = number;
+            }
+        }
+        self.tasks.variants.remove(best)
+    }
+
+    pub(crate) fn no_selection(&mut self, task: VariantTask) {
+        self.tasks.unselected.push(task);
+    }
+
+    /// Looks once more at the sets without a selection, since there are new opinions.
+    pub(crate) fn retry_variants(&mut self) {
+        self.tasks.variants.append(&mut self.tasks.unselected);
+    }
+
+    /// Adds a node for an arc with everything that follows of it; none if that would be a cycle or
+    /// repeat what is there.
+    pub(crate) fn add_arc(
+        &mut self,
+        composer: &mut Composer<'_, '_, '_>,
+        site: Site,
+        arc: &NewArc,
+        mut options: ArcOptions,
+    ) -> Option<NodeId> {
+        composer.nodes += 1;
+        if composer.nodes > composer.library.limits.index_nodes || !self.may_reach(composer, site, arc) {
+            return None;
+        }
+        options.skip_duplicates |= self.frame.is_some_and(|frame| frame.skip_duplicates);
+        if options.skip_duplicates && self.is_known(composer, site) {
+            return None;
+        }
+        let new = if options.with_ancestors {
+            let frame = Frame {
+                requested: site,
+                parent: arc.parent,
+                arc,
+                skip_duplicates: options.skip_duplicates,
+                graph: &self.graph,
+                previous: self.frame,
+            };
+            let within = BuildOptions {
+                ancestor_levels: self.options.ancestor_levels,
+                imply_bases: false,
+                choose_variants: false,
+                root_contributes: !options.inert,
+            };
+            let target = build_graph(composer, site, within, None, Some(&frame));
+            self.graph.append(target, arc, &mut composer.library.paths)
+        } else {
+            let has_specs = composer.library.stack(site.stack).has_specs(site.path);
+            let new = self.graph.insert(site, arc, &mut composer.library.paths, has_specs);
+            self.graph.node_mut(new).inert = options.inert;
+            new
+        };
+        let scene = self.site.stack;
+        if self.graph.can_be_culled(new, scene, &composer.library.paths) {
+            self.graph.node_mut(new).culled = true;
+        } else {
+            let mut above = arc.parent;
+            while self.graph.node(above).culled {
+                self.graph.node_mut(above).culled = false;
+                above = self.graph.node(above).parent;
+            }
+        }
+        options.skip_written_arcs |= options.with_ancestors;
+        self.add_tasks(composer, new, options);
+        Some(new)
+    }
+
+    /// Lists what a new node brings: implied classes first, then what its specs write.
+    fn add_tasks(&mut self, composer: &mut Composer<'_, '_, '_>, node: NodeId, options: ArcOptions) {
+        if !options.skip_implied_bases {
+            let kind = self.graph.node(node).kind;
+            if kind.is_class() {
+                let start = self.start_of_implied_classes(composer, node);
+                self.tasks.implied_classes.insert(start);
+            } else if self.graph.has_child(node, ArcKind::is_class) {
+                self.tasks.implied_classes.insert(node);
+            }
+            if self.options.imply_bases {
+                let is_base = |&above: &NodeId| self.graph.node(above).kind == ArcKind::Specializes;
+                if let Some(top) = self.graph.up(node).filter(is_base).last() {
+                    self.tasks.implied_bases.insert(top);
+                } else if self.graph.has_child(node, |kind| kind == ArcKind::Specializes) {
+                    self.tasks.implied_bases.insert(node);
+                }
+            }
+        }
+        self.add_tasks_below(composer, node, options);
+    }
+
+    fn add_tasks_below(&mut self, composer: &mut Composer<'_, '_, '_>, top: NodeId, options: ArcOptions) {
+        let mut waiting = vec![top];
+        while let Some(node) = waiting.pop() {
+            let found = self.graph.node(node);
+            waiting.extend_from_slice(&found.children);
+            if !(found.has_specs && found.contributes()) {
+                continue;
+            }
+            let written = composer.library.written_arcs(found.site);
+            if self.options.choose_variants && written.variants {
+                self.tasks.variant_sets.insert(node);
+            }
+            if options.skip_implied_bases || options.skip_written_arcs {
+                // The arcs were followed where the subtree comes from.
+                continue;
+            }
+            for (is_written, list) in [
+                (written.references, &mut self.tasks.references),
+                (written.payloads, &mut self.tasks.payloads),
+                (written.inherits, &mut self.tasks.inherits),
+                (written.specializes, &mut self.tasks.specializes),
+            ] {
+                if is_written {
+                    list.insert(node);
+                }
+            }
+        }
+    }
+
+    /// Finds the node from which a class, with those that it came through, is implied upwards.
+    fn start_of_implied_classes(&self, composer: &Composer<'_, '_, '_>, node: NodeId) -> NodeId {
+        let paths = &composer.library.paths;
+        let mut start = node;
+        while self.graph.node(start).kind.is_class() {
+            let (instance, class) = self.graph.start_of_class_hierarchy(start, paths);
+            start = instance;
+            if self.graph.node(instance).kind.is_class() {
+                let ancestral = self.graph.path_at_introduction(instance, paths);
+                if paths.has_prefix(self.graph.node(class).site.path, ancestral) {
+                    break;
+                }
+            }
+        }
+        start
+    }
+
+    /// Whether a node for a site is there, here or in a tree around this one.
+    fn is_known(&self, composer: &mut Composer<'_, '_, '_>, mut site: Site) -> bool {
+        let mut graph = &self.graph;
+        let mut frame = self.frame;
+        loop {
+            if graph.contributing_site(site).is_some() {
+                return true;
+            }
+            let Some(around) = frame else {
+                return false;
+            };
+            let current = graph.root().site.path;
+            site.path = composer
+                .library
+                .paths
+                .replace_prefix(around.requested.path, current, site.path);
+            graph = around.graph;
+            frame = around.previous;
+        }
+    }
+
+    /// Whether an arc leads neither in a circle nor too far. If not, says so.
+    fn may_reach(&self, composer: &mut Composer<'_, '_, '_>, site: Site, arc: &NewArc) -> bool {
+        if arc.kind == ArcKind::Variants {
+            return true;
+        }
+        let mut graph = &self.graph;
+        let mut frame = self.frame;
+        let mut node = arc.parent;
+        let mut sought = site;
+        let mut arcs = 1;
+        loop {
+            let paths = &mut composer.library.paths;
+            for above in graph.up(node) {
+                arcs += 1;
+                let other = graph.node(above).site;
+                let meets = other.stack == sought.stack
+                    && (paths.has_prefix(other.path, sought.path) || paths.has_prefix(sought.path, other.path));
+                if meets {
+                    self.report_cycle(composer, site, arc);
+                    return false;
+                }
+            }
+            let Some(around) = frame else {
+                break;
+            };
+            let current = graph.root().site.path;
+            sought.path = paths.replace_prefix(around.requested.path, current, sought.path);
+            graph = around.graph;
+            node = around.parent;
+            frame = around.previous;
+        }
+        let limit = composer.library.limits.arc_depth;
+        if arcs > limit + 1 {
+            let message = format!("more than {limit} arcs lead from a prim to here");
+            let error = Diagnostic::error("arcs-too-deep", message);
+            self.report_at(composer, error, arc, true);
+            return false;
+        }
+        true
+    }
+
+    fn report_cycle(&self, composer: &mut Composer<'_, '_, '_>, site: Site, arc: &NewArc) {
+        let target = composer.library.paths.text(site.path);
+        let message = format!("`{}` leads back to `{target}`", arc.kind.word());
+        let error = Diagnostic::error("arc-cycle", message).note("a prim cannot be made of itself; break the circle at one of these arcs");
+        self.report_at(composer, error, arc, true);
+    }
+
+    /// Reports something about an arc, with the arcs that lead to it.
+    pub(crate) fn report_at(&self, composer: &mut Composer<'_, '_, '_>, error: Diagnostic, arc: &NewArc, chain: bool) {
+        let library = &mut *composer.library;
+        let mut error = error;
+        let place = arc.place.or_else(|| self.arc_places(arc.parent).first().map(|&(_, place)| place));
+        if let Some(place) = place {
+            error = error.at(place);
+        }
+        if chain {
+            let mut places = self.arc_places(arc.parent);
+            places.reverse();
+            for (kind, place) in places {
+                if Some(place) != error.place {
+                    let text = library.sources.text(place).to_owned();
+                    error = error.also(place, format!("reached by {} {text}", kind.word()));
+                }
+            }
+        }
+        library.report.push_once(error);
+    }
+
+    /// Lists the arcs from a node up to the prim, through all trees around this one.
+    fn arc_places(&self, mut node: NodeId) -> Vec<(ArcKind, Place)> {
+        let mut list = Vec::new();
+        let mut graph = &self.graph;
+        let mut frame = self.frame;
+        loop {
+            for above in graph.up(node) {
+                let found = graph.node(above);
+                if let Some(place) = found.place {
+                    list.push((found.kind, place));
+                }
+            }
+            let Some(around) = frame else {
+                return list;
+            };
+            if let Some(place) = around.arc.place {
+                list.push((around.arc.kind, place));
+            }
+            graph = around.graph;
+            node = around.parent;
+            frame = around.previous;
+        }
+    }
+}
+
+impl<'f> Frame<'f> {
+    /// The tree around, its node with the arc, and how the arc carries paths.
+    pub(crate) fn around(&self) -> (&'f Graph, NodeId, &'f PathMap) {
+        (self.graph, self.parent, &self.arc.map)
+    }
+
+    pub(crate) fn previous(&self) -> Option<&'f Frame<'f>> {
+        self.previous
+    }
+
+    /// Whether an arc to a prim below the top level brings an ancestor of its target at the moment.
+    pub(crate) fn is_above_target(&self, site: Site) -> bool {
+        matches!(self.arc.kind, ArcKind::References | ArcKind::Payloads) && site != self.requested
+    }
+}
+
+/// Makes the description of an arc.
+#[allow(clippy::too_many_arguments, reason = "each is one property of an arc")]
+pub(crate) fn new_arc(
+    kind: ArcKind,
+    parent: NodeId,
+    origin: NodeId,
+    map: PathMap,
+    position: u32,
+    depth: u16,
+    place: Option<Place>,
+) -> NewArc {
+    NewArc {
+        kind,
+        parent,
+        origin,
+        map: Rc::new(map),
+        position,
+        depth,
+        place,
+    }
+}
