@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::mapping::TimeMap;
 use super::paths::{PathId, PathTable};
-use super::spec::{AssetRef, FlatLayer, Flattener, Spec};
+use super::spec::{AssetRef, FlatLayer, Flattener, Selection, Spec};
 use crate::asset::{self, Folders};
 use crate::diagnostic::{Diagnostic, Report};
 use crate::options::Limits;
@@ -74,6 +74,8 @@ pub(crate) struct Library<'a, 'r> {
     /// Which file a text means that is written in another.
     named: HashMap<(SourceId, Box<str>), FileId>,
     opinions: usize,
+    /// What the command line selects, by prim.
+    pub(crate) session_selections: HashMap<PathId, Vec<Selection>>,
 }
 
 impl<'a, 'r> Library<'a, 'r> {
@@ -92,6 +94,7 @@ impl<'a, 'r> Library<'a, 'r> {
             stack_of: BTreeMap::new(),
             named: HashMap::new(),
             opinions: 0,
+            session_selections: HashMap::new(),
         }
     }
 

@@ -14,6 +14,7 @@ mod checks;
 mod children;
 mod classes;
 mod graph;
+mod idle_variants;
 mod indexer;
 mod library;
 mod mapping;
@@ -87,6 +88,7 @@ pub(crate) fn compose(library: &mut Library<'_, '_>, stack: StackId, load_payloa
         checks::check_graph(library, &graph);
         let above = next.parent.is_none_or(|parent| composed.prims[parent].rendered);
         let prim = resolver.resolve(library, &graph, next.parent, above);
+        idle_variants::warn_of_idle_variants(library, &graph, &prim);
         let position = composed.prims.len();
         let is_active = prim.active;
         composed.index.insert(prim.path.clone(), position);
