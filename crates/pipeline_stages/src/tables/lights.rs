@@ -7,6 +7,7 @@ use pipeline_data::vocabulary::{
 use pipeline_data::{Acceleration, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, WorldTransform};
 use radiometry::Rgb;
 use scene_format::{Diagnostic, Place, Scene};
+use spatial::MOST_DISTANT;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use transport::LightSource;
@@ -145,7 +146,7 @@ impl Collector<'_> {
             None => Rgb::from(light.power) * (0.25 / PI) as f32,
         };
         let position = (world.0.translation - self.origin.0).as_vec3();
-        if !position.is_finite() {
+        if !position.is_finite() || position.abs().max_element() > MOST_DISTANT {
             let message = format!(
                 "`{}` is too far from the scene's geometry for single precision",
                 self.path(prim)
