@@ -35,7 +35,9 @@ pub fn explain(scene: &Scene, question: &str) -> Result<String, Diagnostic> {
         field.name,
         state_text(field)
     );
-    let rows: Vec<[String; 4]> = (0..field.opinions.len()).map(|number| row(scene, prim, field, number)).collect();
+    let rows: Vec<[String; 4]> = (0..field.opinions.len())
+        .map(|number| row(scene, prim, field, number))
+        .collect();
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths = [width(0), width(1), width(2)];
     for (number, [place, value, arc, verdict]) in rows.iter().enumerate() {
@@ -65,7 +67,13 @@ fn find<'s>(scene: &'s Scene, question: &str) -> Result<(&'s Prim, &'s Component
         return Err(error.suggest(nearest(path, names)));
     };
     let all = || prim.components.iter().chain(&prim.removed);
-    let list = |names: Vec<&str>| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    let list = |names: Vec<&str>| {
+        if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        }
+    };
     let fits = |found: &&ComponentValue| component.is_none_or(|name| name == found.name);
     if let Some(name) = component
         && !all().any(|found| found.name == name)
@@ -83,7 +91,11 @@ fn find<'s>(scene: &'s Scene, question: &str) -> Result<(&'s Prim, &'s Component
     match found[..] {
         [(component, field)] => Ok((prim, component, field)),
         [] => {
-            let names = || all().filter(fits).flat_map(|found| found.fields.iter().map(|field| field.name));
+            let names = || {
+                all()
+                    .filter(fits)
+                    .flat_map(|found| found.fields.iter().map(|field| field.name))
+            };
             let message = format!("no layer has an opinion about `{question}`, so the default holds");
             Err(Diagnostic::error("no-opinion", message)
                 .suggest(nearest(field, names()))
@@ -233,18 +245,24 @@ fn between(winner: &Contributor, loser: &Contributor) -> String {
 fn remarks(prim: &Prim, component: &ComponentValue, field: &FieldValue) -> Vec<String> {
     let mut list = Vec::new();
     if prim.removed.iter().any(|removed| removed.name == component.name) {
-        list.push(format!("`without` removes {} from {}, so this has no effect", component.name, prim.path));
+        list.push(format!(
+            "`without` removes {} from {}, so this has no effect",
+            component.name, prim.path
+        ));
     }
     let in_variant = |opinion: &Opinion| {
         let way = ways(prim, opinion.contributor);
-        way.iter().any(|&number| prim.contributors[number as usize].arc == ArcKind::Variants)
+        way.iter()
+            .any(|&number| prim.contributors[number as usize].arc == ArcKind::Variants)
     };
     if !field.is_relationship()
         && !in_variant(&field.opinions[0])
         && let Some(hidden) = field.opinions.iter().find(|opinion| in_variant(opinion))
     {
         let path = &prim.contributors[hidden.contributor as usize].path;
-        list.push(format!("the stronger opinion makes the choice of a variant pointless here: {path} has one too"));
+        list.push(format!(
+            "the stronger opinion makes the choice of a variant pointless here: {path} has one too"
+        ));
     }
     list
 }

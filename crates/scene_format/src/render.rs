@@ -60,7 +60,12 @@ pub(crate) fn render(diagnostic: &Diagnostic, sources: &Sources, colour: bool) -
     for (number, (place, what)) in diagnostic.related.iter().enumerate() {
         let left_out = count.saturating_sub(MOST_RELATED);
         if left_out > 0 && number == MOST_RELATED / 2 {
-            let _ = writeln!(text, "{:margin$} {} .. and {left_out} more ..", "", paint.text(BLUE, "="));
+            let _ = writeln!(
+                text,
+                "{:margin$} {} .. and {left_out} more ..",
+                "",
+                paint.text(BLUE, "=")
+            );
         }
         if (MOST_RELATED / 2..MOST_RELATED / 2 + left_out).contains(&number) {
             continue;

@@ -166,12 +166,16 @@ pub(crate) enum EditTrouble {
 impl EditTrouble {
     pub(crate) fn warning(self, name: &str) -> Diagnostic {
         match self {
-            Self::IdleDelete => {
-                Diagnostic::warning("delete-without-effect", format!("there is no `{name}` here to be deleted"))
-                    .note("`delete` removes what weaker layers of the same file list, not what comes through an arc")
-            }
-            Self::Dropped => Diagnostic::warning("list-drops-items", format!("a plain list in a stronger layer drops `{name}`"))
-                .note("a plain list replaces what is weaker; `Edit(prepend: ..)` adds to it"),
+            Self::IdleDelete => Diagnostic::warning(
+                "delete-without-effect",
+                format!("there is no `{name}` here to be deleted"),
+            )
+            .note("`delete` removes what weaker layers of the same file list, not what comes through an arc"),
+            Self::Dropped => Diagnostic::warning(
+                "list-drops-items",
+                format!("a plain list in a stronger layer drops `{name}`"),
+            )
+            .note("a plain list replaces what is weaker; `Edit(prepend: ..)` adds to it"),
         }
     }
 }
@@ -179,17 +183,17 @@ impl EditTrouble {
 impl<T> Combined<T> {
     /// Lists what deserves a warning, with its place.
     pub(crate) fn without_effect(&self, place: impl Fn(&T) -> Place) -> Vec<(Place, EditTrouble)> {
-        let idle = self.idle_deletes.iter().map(|item| (place(item), EditTrouble::IdleDelete));
+        let idle = self
+            .idle_deletes
+            .iter()
+            .map(|item| (place(item), EditTrouble::IdleDelete));
         let dropped = self.dropped.iter().map(|item| (place(item), EditTrouble::Dropped));
         idle.chain(dropped).collect()
     }
 }
 
 /// Combines opinions about a list, given strong to weak; items with one `key` are one.
-pub(crate) fn combine<T: Clone, K: Eq + Hash>(
-    edits: &[ListEdit<T>],
-    key: impl Fn(&T) -> K,
-) -> Combined<T> {
+pub(crate) fn combine<T: Clone, K: Eq + Hash>(edits: &[ListEdit<T>], key: impl Fn(&T) -> K) -> Combined<T> {
     let mut combined = Combined {
         items: Vec::new(),
         idle_deletes: Vec::new(),
@@ -222,7 +226,9 @@ impl Indexer<'_> {
             return;
         }
         // An arc to a prim below the top level needs the payloads above its target to find it.
-        let above_target = self.frame.is_some_and(|frame| frame.is_above_target(self.graph.root().site));
+        let above_target = self
+            .frame
+            .is_some_and(|frame| frame.is_above_target(self.graph.root().site));
         if which == AssetArcKind::Payloads && !composer.load_payloads && !above_target {
             return;
         }
@@ -285,7 +291,10 @@ impl Indexer<'_> {
     fn suggest_prims(&self, composer: &Composer<'_, '_, '_>, stack: StackId, error: Diagnostic) -> Diagnostic {
         let names = composer.library.top_level_prims(stack);
         match names.first() {
-            Some(first) => error.note(format!("its prims: {}; write `#{first}` behind the file's name", names.join(", "))),
+            Some(first) => error.note(format!(
+                "its prims: {}; write `#{first}` behind the file's name",
+                names.join(", ")
+            )),
             None => error.note("it has no prims"),
         }
     }

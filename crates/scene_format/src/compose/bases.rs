@@ -100,7 +100,10 @@ impl Indexer<'_> {
         }
         let site = self.graph.node(source).site;
         let children = &self.graph.node(parent).children;
-        let known = children.iter().copied().find(|&child| self.graph.node(child).site == site);
+        let known = children
+            .iter()
+            .copied()
+            .find(|&child| self.graph.node(child).site == site);
         let new = known.or_else(|| {
             let implied = self.graph.is_implied(source);
             // Of implied classes within the subtree others will be made from the copies.

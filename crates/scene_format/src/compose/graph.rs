@@ -191,7 +191,9 @@ impl Graph {
         let Some(parent) = self.parent(node) else {
             return 0;
         };
-        paths.depth(self.node(parent).site.path).saturating_sub(self.node(node).depth)
+        paths
+            .depth(self.node(parent).site.path)
+            .saturating_sub(self.node(node).depth)
     }
 
     /// Gives the path that the arc targets, before the names of descendants were added.
@@ -241,7 +243,10 @@ impl Graph {
 
     /// Finds the node of a site whose opinions count.
     pub(crate) fn contributing_site(&self, site: Site) -> Option<NodeId> {
-        let found = self.nodes.iter().position(|node| node.site == site && node.contributes())?;
+        let found = self
+            .nodes
+            .iter()
+            .position(|node| node.site == site && node.contributes())?;
         Some(NodeId(found as u32))
     }
 

@@ -28,7 +28,8 @@ pub(crate) fn warn_of_idle_variants(library: &mut Library<'_, '_>, graph: &Graph
             }
             _ => match overruled(library, graph, prim, selection) {
                 Some(place) => {
-                    let message = format!("`--variant` changes nothing: stronger opinions overrule all that {name} says");
+                    let message =
+                        format!("`--variant` changes nothing: stronger opinions overrule all that {name} says");
                     Diagnostic::warning("variant-without-effect", message).also(place, "for example")
                 }
                 None => continue,
@@ -66,9 +67,15 @@ fn overruled(library: &Library<'_, '_>, graph: &Graph, prim: &Prim, selection: S
         let arcs = spec.arcs.is_some() || !spec.children.is_empty() || !spec.without.is_empty();
         arcs || spec.active.is_some() || spec.components.iter().any(|component| component.fields.is_empty())
     };
-    for node in graph.ids().filter(|&node| library.paths.step(graph.node(node).site.path) == step) {
+    for node in graph
+        .ids()
+        .filter(|&node| library.paths.step(graph.node(node).site.path) == step)
+    {
         let site = graph.node(node).site;
-        if library.specs(site.stack, site.path).any(|(_, _, spec)| brings_more(spec)) {
+        if library
+            .specs(site.stack, site.path)
+            .any(|(_, _, spec)| brings_more(spec))
+        {
             return None;
         }
     }

@@ -28,6 +28,13 @@ pub(crate) struct Composer<'l, 'a, 'r> {
     pub(crate) work: usize,
 }
 
+impl Composer<'_, '_, '_> {
+    /// Whether the prim in work takes more than a scene may need.
+    pub(crate) fn is_exhausted(&self) -> bool {
+        self.nodes > self.library.limits.index_nodes || self.work > MOST_WORK
+    }
+}
+
 /// The tree around the one that is built for an arc's target.
 pub(crate) struct Frame<'f> {
     /// What the arc targets; the tree begins above it in the namespace and grows towards it.
@@ -167,7 +174,7 @@ fn child_graph(
 impl Indexer<'_> {
     fn run(&mut self, composer: &mut Composer<'_, '_, '_>) {
         loop {
-            if composer.nodes > composer.library.limits.index_nodes || composer.work > MOST_WORK {
+            if composer.is_exhausted() {
                 return self.report_size(composer);
             }
             let tasks = &mut self.tasks;
@@ -435,7 +442,8 @@ impl Indexer<'_> {
     fn report_cycle(&self, composer: &mut Composer<'_, '_, '_>, site: Site, arc: &NewArc) {
         let target = composer.library.paths.text(site.path);
         let message = format!("`{}` leads back to `{target}`", arc.kind.word());
-        let error = Diagnostic::error("arc-cycle", message).note("a prim cannot be made of itself; break the circle at one of these arcs");
+        let error = Diagnostic::error("arc-cycle", message)
+            .note("a prim cannot be made of itself; break the circle at one of these arcs");
         self.report_at(composer, error, arc, true);
     }
 
@@ -443,7 +451,9 @@ impl Indexer<'_> {
     pub(crate) fn report_at(&self, composer: &mut Composer<'_, '_, '_>, error: Diagnostic, arc: &NewArc, chain: bool) {
         let library = &mut *composer.library;
         let mut error = error;
-        let place = arc.place.or_else(|| self.arc_places(arc.parent).first().map(|&(_, place)| place));
+        let place = arc
+            .place
+            .or_else(|| self.arc_places(arc.parent).first().map(|&(_, place)| place));
         if let Some(place) = place {
             error = error.at(place);
         }

@@ -267,8 +267,10 @@ impl<'a, 'r> Library<'a, 'r> {
 
     /// Makes the stack of a scene: that of its file, with the command line's layer above it.
     pub(crate) fn build_stack(&mut self, layer: LayerId, session: Option<LayerId>) -> StackId {
-        let mut layers: Vec<(LayerId, TimeMap)> =
-            session.into_iter().map(|session| (session, TimeMap::IDENTITY)).collect();
+        let mut layers: Vec<(LayerId, TimeMap)> = session
+            .into_iter()
+            .map(|session| (session, TimeMap::IDENTITY))
+            .collect();
         self.add_sublayers(layer, TimeMap::IDENTITY, &mut Vec::new(), &mut layers);
         let mut heads = HashMap::new();
         let mut links = Vec::new();
@@ -295,7 +297,10 @@ impl<'a, 'r> Library<'a, 'r> {
         layers.push((layer, time));
         for asset in self.layer(layer).sublayers.clone() {
             if layers.len() >= self.limits.layers {
-                let message = format!("a file has at most {} sublayers, all levels together", self.limits.layers);
+                let message = format!(
+                    "a file has at most {} sublayers, all levels together",
+                    self.limits.layers
+                );
                 let error = Diagnostic::error("too-many-layers", message);
                 return self.report.push_once(error.at(asset.place));
             }

@@ -28,10 +28,7 @@ impl Indexer<'_> {
         let Some((variant, place)) = self.selection(composer, task.node, task.set) else {
             return self.no_selection(task);
         };
-        let step = Step::Variant {
-            set: task.set,
-            variant,
-        };
+        let step = Step::Variant { set: task.set, variant };
         let body = Site {
             path: composer.library.paths.join(site.path, step),
             ..site
@@ -60,7 +57,11 @@ impl Indexer<'_> {
         let mut graph = &self.graph;
         // As far up as the path has a meaning.
         let mut first = node;
-        if let Some(above) = graph.node(node).map_to_root.to_target(path, &mut composer.library.paths) {
+        if let Some(above) = graph
+            .node(node)
+            .map_to_root
+            .to_target(path, &mut composer.library.paths)
+        {
             path = above;
             first = NodeId::ROOT;
         }

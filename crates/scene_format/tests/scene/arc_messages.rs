@@ -9,7 +9,10 @@ use crate::vocabulary::options;
 #[test]
 fn missing_files() {
     assert_snapshot!(messages(&[
-        ("root.ron", "Layer(\n    sublayers: [\"lihgt.ron\"],\n    prims: {\"/W\": Def(references: [\"lib/ring.ron#/Ring\"])},\n)\n"),
+        (
+            "root.ron",
+            "Layer(\n    sublayers: [\"lihgt.ron\"],\n    prims: {\"/W\": Def(references: [\"lib/ring.ron#/Ring\"])},\n)\n"
+        ),
         ("light.ron", "Layer()"),
     ]));
 }
@@ -17,27 +20,45 @@ fn missing_files() {
 #[test]
 fn missing_prims() {
     assert_snapshot!(messages(&[
-        ("root.ron", "Layer(prims: {\n    \"/W\": Def(references: [\"a.ron#/Rign\", \"a.ron\", \"#/Here\"]),\n})\n"),
+        (
+            "root.ron",
+            "Layer(prims: {\n    \"/W\": Def(references: [\"a.ron#/Rign\", \"a.ron\", \"#/Here\"]),\n})\n"
+        ),
         ("a.ron", "Layer(prims: {\"/Ring\": Def(), \"/Stone\": Def()})"),
     ]));
 }
 
 #[test]
 fn missing_default_prim_of_the_root() {
-    assert_snapshot!(messages(&[("root.ron", "Layer(default_prim: \"World\", prims: {\"/W\": Def()})")]));
+    assert_snapshot!(messages(&[(
+        "root.ron",
+        "Layer(default_prim: \"World\", prims: {\"/W\": Def()})"
+    )]));
 }
 
 #[test]
 fn an_arc_to_itself() {
-    assert_snapshot!(messages(&[("root.ron", "Layer(prims: {\n    \"/W\": Def(references: [\"#/W\"]),\n})\n")]));
+    assert_snapshot!(messages(&[(
+        "root.ron",
+        "Layer(prims: {\n    \"/W\": Def(references: [\"#/W\"]),\n})\n"
+    )]));
 }
 
 #[test]
 fn arcs_in_a_circle_through_files() {
     assert_snapshot!(messages(&[
-        ("root.ron", "Layer(prims: {\n    \"/W\": Def(references: [\"a.ron#/A\"]),\n})\n"),
-        ("a.ron", "Layer(prims: {\n    \"/A\": Def(payloads: [\"b.ron#/B\"]),\n})\n"),
-        ("b.ron", "Layer(prims: {\n    \"/B\": Def(references: [\"a.ron#/A\"]),\n})\n"),
+        (
+            "root.ron",
+            "Layer(prims: {\n    \"/W\": Def(references: [\"a.ron#/A\"]),\n})\n"
+        ),
+        (
+            "a.ron",
+            "Layer(prims: {\n    \"/A\": Def(payloads: [\"b.ron#/B\"]),\n})\n"
+        ),
+        (
+            "b.ron",
+            "Layer(prims: {\n    \"/B\": Def(references: [\"a.ron#/A\"]),\n})\n"
+        ),
     ]));
 }
 
@@ -61,8 +82,14 @@ fn sublayers_in_a_circle() {
 #[test]
 fn targets_outside_of_a_reference() {
     assert_snapshot!(messages(&[
-        ("root.ron", "Layer(prims: {\n    \"/W\": Def(references: [\"a.ron#/A\"]),\n})\n"),
-        ("a.ron", "Layer(prims: {\n    \"/A\": Def(LightLinks: (exclude: [\"/Gold\", \"/A/K\"]), children: {\"K\": Def()}),\n    \"/Gold\": Def(),\n})\n"),
+        (
+            "root.ron",
+            "Layer(prims: {\n    \"/W\": Def(references: [\"a.ron#/A\"]),\n})\n"
+        ),
+        (
+            "a.ron",
+            "Layer(prims: {\n    \"/A\": Def(LightLinks: (exclude: [\"/Gold\", \"/A/K\"]), children: {\"K\": Def()}),\n    \"/Gold\": Def(),\n})\n"
+        ),
     ]));
 }
 
@@ -83,7 +110,10 @@ fn files_outside_of_the_root() {
 #[test]
 fn what_is_no_file() {
     assert_snapshot!(messages(&[
-        ("root.ron", "Layer(prims: {\n    \"/W\": Def(references: [\"lib#/A\"]),\n})\n"),
+        (
+            "root.ron",
+            "Layer(prims: {\n    \"/W\": Def(references: [\"lib#/A\"]),\n})\n"
+        ),
         ("lib/a.ron", "Layer()"),
     ]));
 }
@@ -92,7 +122,10 @@ fn what_is_no_file() {
 #[test]
 fn links_out_of_the_root() {
     let outside = folder(&[("secret.ron", "Layer(prims: {\"/A\": Def()})")]);
-    let inside = folder(&[("root.ron", "Layer(prims: {\n    \"/W\": Def(references: [\"link.ron#/A\"]),\n})\n")]);
+    let inside = folder(&[(
+        "root.ron",
+        "Layer(prims: {\n    \"/W\": Def(references: [\"link.ron#/A\"]),\n})\n",
+    )]);
     std::os::unix::fs::symlink(outside.path().join("secret.ron"), inside.path().join("link.ron")).unwrap();
     let errors = load_in(inside.path(), &options()).unwrap_err();
     assert_snapshot!(without_folder(&errors.to_string(), inside.path()));
@@ -102,8 +135,14 @@ fn links_out_of_the_root() {
 fn trouble_in_a_file_says_how_it_was_reached() {
     assert_snapshot!(messages(&[
         ("root.ron", "Layer(\n    sublayers: [\"shot/light.ron\"],\n)\n"),
-        ("shot/light.ron", "Layer(prims: {\n    \"/W\": Def(references: [\"../lib/a.ron#/A\"]),\n})\n"),
-        ("lib/a.ron", "Layer(prims: {\n    \"/A\": Def(Camera: (fov: \"wide\")),\n})\n"),
+        (
+            "shot/light.ron",
+            "Layer(prims: {\n    \"/W\": Def(references: [\"../lib/a.ron#/A\"]),\n})\n"
+        ),
+        (
+            "lib/a.ron",
+            "Layer(prims: {\n    \"/A\": Def(Camera: (fov: \"wide\")),\n})\n"
+        ),
     ]));
 }
 
@@ -119,13 +158,25 @@ fn a_broken_file_hides_no_other() {
 #[test]
 fn offsets_and_scales() {
     assert_snapshot!(messages(&[
-        ("root.ron", "Layer(\n    sublayers: [(to: \"a.ron\", scale: -1)],\n    prims: {\"/W\": Def(references: [(to: \"a.ron\", scale: 0, offset: 2)], payloads: Edit(prepnd: []))},\n)\n"),
+        (
+            "root.ron",
+            "Layer(\n    sublayers: [(to: \"a.ron\", scale: -1)],\n    prims: {\"/W\": Def(references: [(to: \"a.ron\", scale: 0, offset: 2)], payloads: Edit(prepnd: []))},\n)\n"
+        ),
         ("a.ron", "Layer()"),
     ]));
     assert_snapshot!(messages(&[
-        ("root.ron", "Layer(prims: {\n    \"/W\": Def(references: [(to: \"a.ron#/A\", scale: 1e-300)]),\n})\n"),
-        ("a.ron", "Layer(prims: {\n    \"/A\": Def(references: [(to: \"b.ron#/B\", scale: 1e-300)]),\n})\n"),
-        ("b.ron", "Layer(prims: {\"/B\": Def(Camera: (fov: Samples({0: 1, 1: 2})))})\n"),
+        (
+            "root.ron",
+            "Layer(prims: {\n    \"/W\": Def(references: [(to: \"a.ron#/A\", scale: 1e-300)]),\n})\n"
+        ),
+        (
+            "a.ron",
+            "Layer(prims: {\n    \"/A\": Def(references: [(to: \"b.ron#/B\", scale: 1e-300)]),\n})\n"
+        ),
+        (
+            "b.ron",
+            "Layer(prims: {\"/B\": Def(Camera: (fov: Samples({0: 1, 1: 2})))})\n"
+        ),
     ]));
 }
 
@@ -153,7 +204,10 @@ fn warnings_of_what_has_no_effect() {
             "root.ron",
             "Layer(\n    sublayers: [\"weak.ron\"],\n    order: [\"Nobody\"],\n    prims: {\n        \"/W\": Def(\n            references: Edit(delete: [\"weak.ron#/P\"]),\n            inherits: [\"/_Metl\"],\n            without: [\"Film\"],\n            LightLinks: (exclude: [\"/W\"]),\n        ),\n        \"/_Metal\": Class(),\n    },\n)\n"
         ),
-        ("weak.ron", "Layer(prims: {\"/W\": Over(LightLinks: (exclude: [\"/P\", \"/W\"])), \"/P\": Def()})"),
+        (
+            "weak.ron",
+            "Layer(prims: {\"/W\": Over(LightLinks: (exclude: [\"/P\", \"/W\"])), \"/P\": Def()})"
+        ),
     ]));
 }
 
@@ -176,7 +230,10 @@ fn limits_of_arcs() {
     let chain: String = (0..70)
         .map(|n| format!("    \"/P{n}\": Def(references: [\"#/P{}\"]),\n", n + 1))
         .collect();
-    assert_snapshot!(messages(&[("root.ron", &format!("Layer(prims: {{\n{chain}    \"/P70\": Def(),\n}})\n"))]));
+    assert_snapshot!(messages(&[(
+        "root.ron",
+        &format!("Layer(prims: {{\n{chain}    \"/P70\": Def(),\n}})\n")
+    )]));
     // References double at every level: "billion laughs".
     let laughs: String = (0..30)
         .map(|n| format!("    \"/P{n}\": Def(references: [\"#/P{next}\", \"#/Q{next}\"]),\n    \"/Q{n}\": Over(references: [\"#/P{next}\"]),\n", next = n + 1))
@@ -191,7 +248,13 @@ fn limits_of_arcs() {
         },
         ..options()
     };
-    assert_snapshot!(messages_with(&[("root.ron", "Layer(prims: {\n    \"/W\": Def(references: [\"#/A\", \"#/B\"]),\n    \"/A\": Def(references: [\"#/C\", \"#/D\"]),\n    \"/B\": Def(references: [\"#/C\", \"#/D\"]),\n    \"/C\": Def(references: [\"#/E\", \"#/F\"]),\n    \"/D\": Def(references: [\"#/E\", \"#/F\"]),\n    \"/E\": Def(references: [\"#/G\", \"#/H\"]),\n    \"/F\": Def(references: [\"#/G\", \"#/H\"]),\n    \"/G\": Def(),\n    \"/H\": Def(),\n})\n")], &limited));
+    assert_snapshot!(messages_with(
+        &[(
+            "root.ron",
+            "Layer(prims: {\n    \"/W\": Def(references: [\"#/A\", \"#/B\"]),\n    \"/A\": Def(references: [\"#/C\", \"#/D\"]),\n    \"/B\": Def(references: [\"#/C\", \"#/D\"]),\n    \"/C\": Def(references: [\"#/E\", \"#/F\"]),\n    \"/D\": Def(references: [\"#/E\", \"#/F\"]),\n    \"/E\": Def(references: [\"#/G\", \"#/H\"]),\n    \"/F\": Def(references: [\"#/G\", \"#/H\"]),\n    \"/G\": Def(),\n    \"/H\": Def(),\n})\n"
+        )],
+        &limited
+    ));
 }
 
 #[test]
@@ -233,7 +296,10 @@ fn prims_nested_too_deep_through_arcs() {
     };
     assert_snapshot!(messages_with(
         &[
-            ("root.ron", "Layer(prims: {\n    \"/A/B\": Def(references: [\"a.ron#/X\"]),\n})\n"),
+            (
+                "root.ron",
+                "Layer(prims: {\n    \"/A/B\": Def(references: [\"a.ron#/X\"]),\n})\n"
+            ),
             ("a.ron", "Layer(prims: {\n    \"/X/Y/Z\": Def(),\n})\n"),
         ],
         &limited

@@ -43,7 +43,11 @@ pub(crate) fn messages_with(files: &[(&str, &str)], options: &Options) -> String
     let folder = folder(files);
     let text = match load_in(folder.path(), options) {
         Ok(scene) => {
-            let warnings: Vec<String> = scene.warnings.iter().map(|warning| scene.report(warning, false)).collect();
+            let warnings: Vec<String> = scene
+                .warnings
+                .iter()
+                .map(|warning| scene.report(warning, false))
+                .collect();
             warnings.join("\n")
         }
         Err(errors) => errors.to_string(),
