@@ -100,7 +100,7 @@ pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use hash::mix_hash;
 pub use layer::{Specifier, TimeSettings};
 pub use load::{load, load_str};
-pub use mesh::{MeshError, MeshLimits, MeshWarning, ObjMesh, Oddity, load_obj, parse_obj};
+pub use mesh::{MeshData, MeshError, MeshLimits, MeshPlace, MeshWarning, Oddity, load_obj, parse_obj};
 pub use options::{Limits, Options};
 pub use relation::{AssetPath, Target, Targets};
 pub use scene::{AssetUse, ComponentValue, FieldState, FieldValue, Opinion, Prim, Scene, ValueAt};
