@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::options::Limits;
+use crate::scene::Scene;
 use crate::source::{Origin, Place, Sources};
 
 /// The folders that decide where files may lie; both canonical if they exist.
@@ -33,6 +34,14 @@ impl Folders {
     }
 }
 
+impl Scene {
+    /// The folder that no file of the scene may lie outside of, canonical.
+    #[must_use]
+    pub fn root(&self) -> &Path {
+        &self.folders.root
+    }
+}
+
 /// Finds the file that `text`, written at `place`, names.
 pub(crate) fn resolve(text: &str, place: Place, sources: &Sources, folders: &Folders) -> Result<PathBuf, Diagnostic> {
     let folder = match sources.get(place.source).map(|source| &source.origin) {
@@ -47,7 +56,7 @@ fn escape(message: String) -> Diagnostic {
 }
 
 /// Joins and canonicalises; the result is a regular file below `root`.
-fn resolve_below(text: &str, folder: &Path, root: &Path) -> Result<PathBuf, Diagnostic> {
+pub(crate) fn resolve_below(text: &str, folder: &Path, root: &Path) -> Result<PathBuf, Diagnostic> {
     if let Some(problem) = spelling_problem(text) {
         return Err(escape(problem));
     }
@@ -111,7 +120,7 @@ fn missing_file(text: &str, joined: &Path) -> Diagnostic {
 }
 
 /// Why a text is not a relative path that means the same on every system.
-fn spelling_problem(text: &str) -> Option<String> {
+pub(crate) fn spelling_problem(text: &str) -> Option<String> {
     if text.is_empty() {
         return Some("the name of a file is empty".to_owned());
     }
