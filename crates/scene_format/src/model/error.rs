@@ -105,6 +105,16 @@ enum Kind {
     Flat,
 }
 
+/// Characters of a message at most: it may quote a file that is full of nonsense.
+const LONGEST_PROBLEM: usize = 500;
+
+/// Quotes some names that a file gives, shortened, for a message.
+pub(super) fn quote_some<'n>(names: impl Iterator<Item = &'n str>) -> String {
+    let short = |name: &str| format!("{:?}", name.chars().take(40).collect::<String>());
+    let some: Vec<String> = names.take(10).map(short).collect();
+    some.join(", ")
+}
+
 /// An error that does not know its file yet.
 #[derive(Debug)]
 pub(super) struct Fault(Box<Inner>);
@@ -127,11 +137,15 @@ impl From<MeshError> for Fault {
 
 impl Fault {
     fn new(kind: Kind, at: &str, problem: impl fmt::Display, remedy: &str) -> Self {
-        let problem = if at.is_empty() {
+        let mut problem = if at.is_empty() {
             problem.to_string()
         } else {
             format!("{at}: {problem}")
         };
+        if let Some((end, _)) = problem.char_indices().nth(LONGEST_PROBLEM) {
+            problem.truncate(end);
+            problem.push('…');
+        }
         Self(Box::new(Inner::Own {
             kind,
             problem,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::de::DeserializeOwned;
 
-use super::super::error::{Fault, ModelWarning};
+use super::super::error::{Fault, ModelWarning, quote_some};
 use super::super::{ModelFile, ModelLimits};
 use super::container;
 use super::json::{Header, Root};
@@ -122,17 +122,12 @@ fn check_extensions(root: &Root, warnings: &mut Vec<ModelWarning>) -> Result<(),
             return Err(Fault::unsupported(&at, format!("the extension {name:?} is not supported")).remedy(remedy));
         }
     }
-    let unknown: Vec<String> = root
-        .extensions_used
-        .iter()
-        .filter(|name| !SUPPORTED.contains(&name.as_str()) && !NOTED.contains(&name.as_str()))
-        .take(10)
-        .map(|name| format!("{name:?}"))
-        .collect();
+    let names = root.extensions_used.iter().map(String::as_str);
+    let unknown = quote_some(names.filter(|name| !SUPPORTED.contains(name) && !NOTED.contains(name)));
     if !unknown.is_empty() {
         warnings.push(ModelWarning {
             at: "extensionsUsed".to_owned(),
-            message: format!("not supported, so without effect: {}", unknown.join(", ")),
+            message: format!("not supported, so without effect: {}", unknown),
         });
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::super::error::Fault;
+use super::super::error::{Fault, quote_some};
 use super::super::meshes::MeshPart;
 use super::super::{ModelFile, ModelLimits};
 use super::buffers::Buffers;
@@ -142,10 +142,7 @@ impl GltfMeshes {
             let known = self.names.names.iter().map(String::as_str);
             match crate::diagnostic::nearest(wanted, known.clone()) {
                 Some(name) => fault.remedy(&format!("did you mean {name:?}?")),
-                None => {
-                    let some: Vec<&str> = known.take(10).collect();
-                    fault.remedy(&format!("meshes in the file: {}", some.join(", ")))
-                }
+                None => fault.remedy(&format!("meshes in the file: {}", quote_some(known))),
             }
         })
     }

@@ -8,7 +8,7 @@ mod libraries;
 mod material;
 mod mtl;
 
-use super::error::{Fault, ModelWarning};
+use super::error::{Fault, ModelWarning, quote_some};
 use super::gltf::{MATERIALS, is_fit, root_name};
 use super::meshes::MeshPart;
 use super::names::{Wanted, sibling_names};
@@ -67,10 +67,7 @@ impl ObjMeshes {
             let fault = Fault::invalid("", format!("there is no object or group {name:?}"));
             match crate::diagnostic::nearest(name, names.clone()) {
                 Some(near) => fault.remedy(&format!("did you mean {near:?}?")),
-                None => {
-                    let some: Vec<&str> = names.take(10).collect();
-                    fault.remedy(&format!("objects in the file: {}", some.join(", ")))
-                }
+                None => fault.remedy(&format!("objects in the file: {}", quote_some(names))),
             }
         })
     }
@@ -236,18 +233,12 @@ impl Translation<'_> {
     }
 
     fn warn_of_unknown(&mut self) {
-        let unknown: Vec<String> = self
-            .parts
-            .materials
-            .iter()
-            .filter(|name| self.library.row_of(name).is_none())
-            .take(10)
-            .map(|name| format!("{name:?}"))
-            .collect();
+        let names = self.parts.materials.iter().map(String::as_str);
+        let unknown = quote_some(names.filter(|name| self.library.row_of(name).is_none()));
         if !unknown.is_empty() {
             self.warnings.push(ModelWarning {
                 at: String::new(),
-                message: format!("no library has these materials: {}", unknown.join(", ")),
+                message: format!("no library has these materials: {unknown}"),
             });
         }
     }

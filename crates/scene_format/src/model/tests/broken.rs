@@ -311,8 +311,8 @@ fn meshes_that_are_not_there() {
     insta::assert_snapshot!(said.join("\n"), @r##"
     a.gltf: meshes: there are 2, and none is named; write `mesh: "Flat"`, or one of the others
     a.gltf: meshes: there is no mesh "Rund"; did you mean "Round"?
-    a.gltf: meshes: there is no mesh "Elsewhere"; meshes in the file: Flat, Round
-    a.gltf: meshes: there is no mesh "#2"; meshes in the file: Flat, Round
+    a.gltf: meshes: there is no mesh "Elsewhere"; meshes in the file: "Flat", "Round"
+    a.gltf: meshes: there is no mesh "#2"; meshes in the file: "Flat", "Round"
     a.gltf: meshes[0]: there is no primitive 1, the file has 1; export the model again, or check it with a validator
     "##);
 }
