@@ -6,7 +6,6 @@ use crate::compose::ArcKind;
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::flatten::ron_value;
 use crate::scene::{ComponentValue, Contributor, FieldState, FieldValue, Opinion, Prim, Scene};
-use crate::source::Place;
 
 /// Longest text of a value that is shown.
 const WIDTH: usize = 40;
@@ -141,20 +140,11 @@ fn row(scene: &Scene, prim: &Prim, field: &FieldValue, number: usize) -> [String
         format!("weaker: {}", reason(scene, prim, &field.opinions[0], opinion))
     };
     [
-        short_place(scene, opinion.place),
+        scene.sources.describe_line(opinion.place).to_string(),
         shorten(scene.sources.text(opinion.place)),
         describe_arcs(scene, prim, opinion),
         verdict,
     ]
-}
-
-/// `ring.ron:20`, or the flag of an argument.
-fn short_place(scene: &Scene, place: Place) -> String {
-    if scene.sources.is_argument(place.source) {
-        return scene.sources.name(place.source).to_owned();
-    }
-    let (line, _) = scene.sources.line_column(place);
-    format!("{}:{line}", scene.sources.name(place.source))
 }
 
 /// `inherits /_Metal (from layout.ron:16)`, with the arcs that led to its start.
@@ -167,7 +157,7 @@ fn describe_arcs(scene: &Scene, prim: &Prim, opinion: &Opinion) -> String {
         }
         let place = found
             .arc_place
-            .map_or(String::new(), |place| format!(" (from {})", short_place(scene, place)));
+            .map_or(String::new(), |place| format!(" (from {})", scene.sources.describe_line(place)));
         parts.push(format!("{} {}{place}", found.arc.word(), found.path));
     }
     if parts.is_empty() {

@@ -30,6 +30,9 @@
 //! *A wrong scene is refused.* A misspelt name, a file that is not there, a number out of range: up
 //! to twenty messages at once, each with its place and, where there is one, the remedy.
 //!
+//! *A model is a layer.* [`translate_model`] writes glTF and OBJ files in the same syntax, and [`Model`] reads the
+//! triangles that the prims of such a layer name.
+//!
 //! # What it does not do
 //!
 //! Arcs between prims and files (sublayers, references, payloads, inherits, specializes, variants)
@@ -83,6 +86,7 @@ mod layer;
 mod lex;
 mod load;
 mod mesh;
+mod model;
 mod options;
 mod path;
 mod read;
@@ -104,7 +108,10 @@ pub use flatten::{errors_json, flatten_json, flatten_ron};
 pub use hash::mix_hash;
 pub use layer::{Specifier, TimeSettings};
 pub use load::{load, load_str};
-pub use mesh::{MeshError, MeshLimits, MeshWarning, ObjMesh, Oddity, load_obj, parse_obj};
+pub use mesh::{MeshData, MeshError, MeshLimits, MeshPlace, MeshWarning, Oddity, load_obj, parse_obj};
+pub use model::{
+    MeshPart, Model, ModelError, ModelFile, ModelLimits, ModelWarning, TranslatedModel, is_model, translate_model,
+};
 pub use options::{Limits, Options};
 pub use relation::{AssetPath, Target, Targets};
 pub use scene::{

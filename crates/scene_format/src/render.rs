@@ -91,8 +91,8 @@ fn reached_by(place: Place, sources: &Sources) -> Option<String> {
     let mut source = sources.get(place.source)?;
     while let Some(reached) = source.reached {
         let naming = sources.get(reached.place.source)?;
-        let (line, _) = naming.line_column(reached.place.start);
-        steps.push(format!("{}:{line} {} -> ", visible(&naming.name), reached.word));
+        let place = sources.describe_line(reached.place).to_string();
+        steps.push(format!("{} {} -> ", visible(&place), reached.word));
         source = naming;
     }
     steps.reverse();

@@ -19,7 +19,7 @@ Film            | resolution (512, 512) | filter BlackmanHarris | filter_radius 
 LightTransport  | direct SampleLights | specular Trace | caustic PhotonMap | indirect PathTrace | specular_alpha 0.05
 LookAt          | target - | up (0, 1, 0)
 MaterialBinding | target -
-Mesh            | file - | smooth true
+Mesh            | file - | mesh ? | primitive ? | smooth true
 PointLight      | power (1, 1, 1) | intensity ?
 Quad            | size (1, 1)
 Render          | camera - | samples 64 | max_depth ? | seed 0 | passes ?

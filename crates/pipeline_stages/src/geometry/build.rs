@@ -6,7 +6,6 @@ use pipeline_data::{Acceleration, InstancePrims, MeshStore, PrimIndex, SceneOrig
 use scene_format::{Diagnostic, Scene};
 use spatial::{Geometry, Instance, RayScene, SpatialError, TriangleMesh};
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Geometries and instances as `spatial` wants them, with what the instances came from.
@@ -109,7 +108,7 @@ impl Parts<'_> {
 
     /// Row of the geometry of a mesh, and where its middle lies in the coordinates of the file.
     fn add_mesh(&mut self, mesh: &Mesh) -> Option<(u32, DVec3)> {
-        let row = self.store.row_of(Path::new(&mesh.file.0))?;
+        let row = self.store.row_of(mesh)?;
         let imported = &self.store.meshes()[row];
         let smooth = mesh.smooth || imported.mesh.normals.is_none();
         let geometry = match self.row_of_mesh.get(&(row, smooth)) {

@@ -8,7 +8,6 @@ use pipeline_data::vocabulary::{
 use pipeline_data::{InstancePrims, MeshStore, PrimIndex, RenderSettings};
 use scene_format::{Diagnostic, Scene};
 use std::collections::BTreeMap;
-use std::path::Path;
 use transport::Material;
 
 /// Names of the material components, for messages.
@@ -228,7 +227,7 @@ impl Rows<'_> {
         };
         let closed = match source {
             GeometrySource::Shape(shape) => shape.is_closed(),
-            GeometrySource::Mesh(mesh) => store.get(Path::new(&mesh.file.0)).is_none_or(|mesh| mesh.is_closed()),
+            GeometrySource::Mesh(mesh) => store.get(mesh).is_none_or(|mesh| mesh.is_closed()),
         };
         if closed {
             return;

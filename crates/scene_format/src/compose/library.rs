@@ -9,6 +9,7 @@ use super::paths::{PathId, PathTable};
 use super::spec::{AssetRef, FlatLayer, Flattener, Selection, Spec};
 use crate::asset::{self, Folders};
 use crate::diagnostic::{Diagnostic, Report};
+use crate::model::{ModelFile, ModelLimits, is_model, translate_model};
 use crate::options::Limits;
 use crate::read::read_layer;
 use crate::schema::Schema;
@@ -233,20 +234,66 @@ impl<'a, 'r> Library<'a, 'r> {
 
     fn read_file(&mut self, path: &Path, written: &str, reached: Reached) -> Result<SourceId, Diagnostic> {
         let name = self.sources.shown_beside(reached.place.source, written);
-        let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        match asset::read_text(path, self.limits) {
-            Ok(text) => Ok(self.sources.add_file(&name, &folder, text, Some(reached))),
+        self.add_source(path, &name, Some(reached))
+            .map_err(|error| match error.place {
+                Some(_) => error,
+                None => error.at(reached.place),
+            })
+    }
+
+    /// Reads a file as text; a model is translated.
+    ///
+    /// - `path`: canonical.
+    /// - `name`: what people know the file by.
+    ///
+    /// # Errors
+    ///
+    /// A file that is unreadable, too large, no text, or a broken model.
+    pub(crate) fn add_source(
+        &mut self,
+        path: &Path,
+        name: &str,
+        reached: Option<Reached>,
+    ) -> Result<SourceId, Diagnostic> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        if is_model(path) {
+            let text = self.translate(path, name, reached)?;
+            return Ok(self.sources.add_model(name, folder, text, reached));
+        }
+        match asset::read_text(path, name, self.limits) {
+            Ok(text) => Ok(self.sources.add_file(name, folder, text, reached)),
             Err((error, text)) if error.code == "not-utf-8" => {
                 let end = text.len() as u32;
-                let source = self.sources.add_file(&name, &folder, text, Some(reached));
+                let source = self.sources.add_file(name, folder, text, reached);
                 Err(error.at(Place {
                     source,
                     start: end,
                     end,
                 }))
             }
-            Err((error, _)) => Err(error.at(reached.place)),
+            Err((error, _)) => Err(error),
         }
+    }
+
+    fn translate(&mut self, path: &Path, name: &str, reached: Option<Reached>) -> Result<String, Diagnostic> {
+        let limits = ModelLimits::of(self.limits);
+        let bytes = asset::read_bytes(path, name, limits.bytes)?;
+        let file = ModelFile {
+            name,
+            path,
+            root: &self.folders.root,
+            bytes: &bytes,
+        };
+        let model = translate_model(&file, self.schema, &limits)
+            .map_err(|error| Diagnostic::error(error.code(), error.to_string()))?;
+        for warning in &model.warnings {
+            let warning = Diagnostic::warning("odd-model", format!("{name}: {warning}"));
+            self.report.push_once(match reached {
+                Some(reached) => warning.at(reached.place),
+                None => warning,
+            });
+        }
+        Ok(model.text)
     }
 
     /// Whether every file that was asked for could be read.
