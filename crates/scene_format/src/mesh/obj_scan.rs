@@ -98,8 +98,11 @@ impl ObjFile {
                     self.normals.push(normal);
                 }
                 Some("vt") => {
-                    let uv = numbers(&mut words, 1).map_err(problem)?;
-                    self.uvs.push(DVec2::from_array(uv));
+                    let uv = DVec2::from_array(numbers(&mut words, 1).map_err(problem)?);
+                    if uv.abs().max_element() > f64::from(f32::MAX) {
+                        return Err(problem("a texture coordinate is at most 3.4e38".to_owned()));
+                    }
+                    self.uvs.push(uv);
                 }
                 Some("f") => triangles += self.face(line, words).map_err(problem)?,
                 Some("o" | "g" | "usemtl") => {

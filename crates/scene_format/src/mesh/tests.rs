@@ -104,6 +104,7 @@ fn errors_have_lines() {
         ("v 1 1 1e999\n", "a.obj:1: `1e999` is not a finite number"),
         ("v 1 1 1 0\n", "a.obj:1: the weight 0 of this position is too small"),
         ("vt\n", "a.obj:1: expected 1 number, found 0"),
+        ("vt 0 1e39\n", "a.obj:1: a texture coordinate is at most 3.4e38"),
         ("vn 1 2\n", "a.obj:1: expected 3 numbers, found 2"),
         ("v 0 0 0\nf 1 2 3\n", "a.obj:2: there is no position 2, the file has 1"),
         (
