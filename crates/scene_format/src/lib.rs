@@ -33,11 +33,16 @@
 //! *A model is a layer.* [`translate_model`] writes glTF and OBJ files in the same syntax, and [`Model`] reads the
 //! triangles that the prims of such a layer name.
 //!
+//! *Composition is USD's.* Sublayers, references, payloads, inherits, variants and specializes are
+//! combined in the order in which OpenUSD combines them, ties included; `compose/mod.rs` says how.
+//! [`explain`] tells for a value who said it and why the others lose, [`flatten_ron`] and
+//! [`flatten_json`] write what came out.
+//!
 //! # What it does not do
 //!
-//! Arcs between prims and files (sublayers, references, payloads, inherits, specializes, variants)
-//! are read and checked but not composed yet: a scene that uses one is refused. Formatting with
-//! comments kept, and more than one mistake of syntax in a run, are left out.
+//! Of USD it leaves out relocates, value clips, instancing in the scene graph, variant fallbacks,
+//! and list edits by `add` and `reorder`. A faulty arc is an error, where USD warns and goes on.
+//! Formatting with comments kept, and more than one mistake of syntax in a file, are left out.
 //!
 //! # Example
 //!
@@ -115,7 +120,8 @@ pub use model::{
 pub use options::{Limits, Options};
 pub use relation::{AssetPath, Target, Targets};
 pub use scene::{
-    AssetUse, ComponentValue, Contributor, FieldState, FieldValue, Opinion, Prim, Scene, ValueAt, VariantChoice,
+    AssetUse, ComponentValue, Contributor, FieldState, FieldValue, LoadCost, Opinion, Prim, Scene, ValueAt,
+    VariantChoice,
 };
 pub use schema::{ComponentInfo, FieldInfo, Schema, SchemaError};
 pub use schema_text::schema_text;

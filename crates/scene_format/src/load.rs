@@ -1,13 +1,14 @@
 //! From a file to a scene: reading, composing, checking, in this order.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use crate::asset::Folders;
 use crate::compose::{Composed, LayerId, Library, compose};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::hash::hash_scene;
 use crate::options::Options;
-use crate::scene::Scene;
+use crate::scene::{LoadCost, Scene};
 use crate::schema::Schema;
 use crate::session::read_session;
 use crate::source::{SourceId, Sources};
@@ -64,11 +65,20 @@ fn load_source(
     canonical: Option<PathBuf>,
     options: &Options,
 ) -> Result<Scene, Diagnostics> {
+    let begun = Instant::now();
+    let read_before = library.reading;
     let scene = library
         .add_text(source, canonical)
         .and_then(|layer| compose_scene(&mut library, layer, options));
     match scene {
         Some(mut scene) if !library.report.is_refused() => {
+            let (layers, opinions) = library.counts();
+            scene.cost = LoadCost {
+                layers,
+                opinions,
+                reading: library.reading,
+                composing: begun.elapsed().saturating_sub(library.reading - read_before),
+            };
             scene.warnings = library.report.warnings;
             scene.sources = library.sources;
             Ok(scene)
@@ -116,6 +126,7 @@ fn compose_scene(library: &mut Library<'_, '_>, layer: LayerId, options: &Option
         frame,
         warnings: Vec::new(),
         assets,
+        cost: LoadCost::default(),
         sources: Sources::default(),
         folders: library.folders.clone(),
     })

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use super::mapping::TimeMap;
 use super::paths::{PathId, PathTable};
@@ -75,6 +76,8 @@ pub(crate) struct Library<'a, 'r> {
     /// Which file a text means that is written in another.
     named: HashMap<(SourceId, Box<str>), FileId>,
     opinions: usize,
+    /// Time spent on reading files so far.
+    pub(crate) reading: Duration,
     /// What the command line selects, by prim.
     pub(crate) session_selections: HashMap<PathId, Vec<Selection>>,
 }
@@ -95,6 +98,7 @@ impl<'a, 'r> Library<'a, 'r> {
             stack_of: BTreeMap::new(),
             named: HashMap::new(),
             opinions: 0,
+            reading: Duration::ZERO,
             session_selections: HashMap::new(),
         }
     }
@@ -127,9 +131,11 @@ impl<'a, 'r> Library<'a, 'r> {
 
     /// Takes a text for a file; what is wrong with it is reported.
     pub(crate) fn add_text(&mut self, source: SourceId, canonical: Option<PathBuf>) -> Option<LayerId> {
+        let begun = Instant::now();
         let report = RefCell::new(std::mem::take(&mut self.report));
         let layer = read_layer(&self.sources, source, self.schema, self.limits, &report);
         self.report = report.into_inner();
+        self.reading += begun.elapsed();
         let id = layer.map(|layer| {
             let mut flattener = Flattener {
                 paths: &mut self.paths,
@@ -257,7 +263,9 @@ impl<'a, 'r> Library<'a, 'r> {
     ) -> Result<SourceId, Diagnostic> {
         let folder = path.parent().unwrap_or(Path::new(""));
         if is_model(path) {
+            let begun = Instant::now();
             let text = self.translate(path, name, reached)?;
+            self.reading += begun.elapsed();
             return Ok(self.sources.add_model(name, folder, text, reached));
         }
         match asset::read_text(path, name, self.limits) {
@@ -294,6 +302,11 @@ impl<'a, 'r> Library<'a, 'r> {
             });
         }
         Ok(model.text)
+    }
+
+    /// How many files and fields there are, the command line's included.
+    pub(crate) fn counts(&self) -> (usize, usize) {
+        (self.layers.len(), self.opinions)
     }
 
     /// Whether every file that was asked for could be read.

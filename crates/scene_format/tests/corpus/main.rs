@@ -3,6 +3,7 @@
 //! A line of `named.jsonl` and `public.jsonl` is a case: the files, the arguments, and the answer as
 //! [`flatten_json`] gives it, places of opinions included, or the code of the error.
 
+mod mutations;
 mod vocabulary;
 
 use scene_format::{Options, Schema, errors_json, flatten_json, load};
