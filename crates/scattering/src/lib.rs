@@ -37,6 +37,7 @@ mod coated_metal;
 mod conductor;
 mod dielectric;
 mod diffuse;
+mod dispersion;
 mod energy;
 mod fresnel;
 mod ggx;
@@ -56,6 +57,7 @@ pub use bsdf::Bsdf;
 pub use conductor::{ConductorBsdf, ConductorFresnel};
 pub use dielectric::{DielectricBsdf, SMOOTH_SPREAD};
 pub use diffuse::DiffuseBsdf;
+pub use dispersion::{Dispersion, SampledWavelength};
 pub use fresnel::{
     average_fresnel_conductor, average_fresnel_dielectric, fresnel_conductor, fresnel_dielectric, schlick,
 };
