@@ -41,6 +41,7 @@ mod dispersion;
 mod energy;
 mod fresnel;
 mod ggx;
+mod interior;
 mod lobe;
 mod loss_table;
 mod metals;
@@ -61,6 +62,7 @@ pub use dispersion::{Dispersion, SampledWavelength};
 pub use fresnel::{
     average_fresnel_conductor, average_fresnel_dielectric, fresnel_conductor, fresnel_dielectric, schlick,
 };
+pub use interior::{Crossing, Interior, InteriorList};
 pub use lobe::{BsdfSample, LobeClass, LobeValues, Transport};
 pub use metals::Metal;
 pub use microsurface::{Microsurface, SMOOTH_ALPHA, lobe_class};
