@@ -42,6 +42,7 @@ struct Collector<'a> {
 }
 
 /// Turns light components into sources in world space, and checks that there is light at all.
+#[expect(clippy::too_many_arguments, reason = "a system lists all that it touches")]
 pub(super) fn list_lights(
     mut check: SceneReport,
     acceleration: Res<Acceleration>,
