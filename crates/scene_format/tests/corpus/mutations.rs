@@ -97,7 +97,7 @@ proptest! {
             let places = quoted(text);
             if places.is_empty() || words.is_empty() { continue; }
             let (from, to) = places[at.index(places.len())];
-            text.replace_range(from..to, word.get(&words));
+            text.replace_range(from..to, &words[word.index(words.len())]);
         }
         let files: Vec<(String, Vec<u8>)> = files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
         survives(&files);
