@@ -1,7 +1,7 @@
 //! Implied classes: a class that a referenced prim inherits is looked up in every place on the way
 //! up, so that the outside can overrule it.
 
-use super::graph::{ArcKind, NewArc, NodeId};
+use super::graph::{NewArc, NodeId};
 use super::indexer::{Composer, Indexer};
 use super::mapping::PathMap;
 use std::rc::Rc;
@@ -12,8 +12,7 @@ impl Indexer<'_> {
         let Some(parent) = self.graph.parent(node) else {
             return;
         };
-        // Classes below a base that was moved are implied from where it came from.
-        if self.graph.is_moved_base(node) || !self.graph.has_child(node, ArcKind::is_class) {
+        if !self.graph.has_class(node) {
             return;
         }
         let transfer = self.graph.node(node).map_to_parent.keeping_others();
@@ -32,7 +31,8 @@ impl Indexer<'_> {
         transfer: &PathMap,
         is_start: bool,
     ) {
-        for child in self.graph.node(source).children.clone() {
+        let holder = self.graph.moved_base_of(source).unwrap_or(source);
+        for child in self.graph.node(holder).children.clone() {
             if !self.graph.node(child).kind.is_class() {
                 continue;
             }
@@ -66,8 +66,9 @@ impl Indexer<'_> {
                 self.add_class(composer, &arc, Some(source))
             });
             if let Some(class) = class
-                && self.graph.has_child(child, ArcKind::is_class)
+                && self.graph.has_class(child)
             {
+                let class = self.graph.moved_base_of(class).unwrap_or(class);
                 let paths = &mut composer.library.paths;
                 let up = transfer.after(&self.graph.node(child).map_to_parent, paths);
                 let transfer = map.inverse().after(&up, paths);

@@ -74,6 +74,14 @@ impl PathMap {
         map
     }
 
+    /// The map without what stays as it is, unless nothing else is left.
+    pub(crate) fn dropping_others(&self) -> Self {
+        Self {
+            keeps_others: self.pairs.is_empty() && self.keeps_others,
+            ..self.clone()
+        }
+    }
+
     fn is_identity(&self) -> bool {
         self.pairs.is_empty() && self.keeps_others
     }
