@@ -7,7 +7,7 @@ use super::graph::{ArcKind, NewArc, NodeId, Site};
 use super::indexer::{ArcOptions, Composer, Indexer, new_arc};
 use super::library::{FileId, LayerId, Library, StackId};
 use super::mapping::{PathMap, TimeMap};
-use super::paths::{PathId, Step, Word};
+use super::paths::{PathId, Word};
 use super::spec::{Arcs, AssetRef};
 use crate::diagnostic::Diagnostic;
 use crate::layer::{ListEdit, Spanned};
@@ -378,19 +378,10 @@ impl Indexer<'_> {
     }
 }
 
-/// Finds the path that an instance takes opinions from through a class map; of an instance in a
-/// variant, the class is looked for in the same variant if it lies below its prim.
+/// Finds the path that an instance takes opinions from through a class map. Of an instance in a variant
+/// it is the plain path: the variants of the class are chosen like those of any other target.
 fn class_path(composer: &mut Composer<'_, '_, '_>, instance: PathId, map: &PathMap) -> Option<PathId> {
     let paths = &mut composer.library.paths;
-    if !paths.is_in_variant(instance) {
-        return map.to_source(instance, paths);
-    }
-    let mut body = instance;
-    while !matches!(paths.step(body), Step::Variant { .. }) {
-        body = paths.parent(body);
-    }
     let plain = paths.without_variants(instance);
-    let class = map.to_source(plain, paths)?;
-    let prim = paths.without_variants(body);
-    Some(paths.replace_prefix(class, prim, body))
+    map.to_source(plain, paths)
 }

@@ -28,7 +28,7 @@ impl Indexer<'_> {
         };
         if self.graph.node(base).origin != placeholder {
             // It was there before. Its classes have to be implied from this place too.
-            self.imply_classes_later(placeholder);
+            self.imply_class_later(composer, placeholder);
         }
         Some(base)
     }

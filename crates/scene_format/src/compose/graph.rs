@@ -176,6 +176,11 @@ impl Graph {
         std::iter::successors(Some(node), |&node| self.parent(node))
     }
 
+    /// Whether `node` is `top` or hangs below it.
+    pub(crate) fn is_below(&self, node: NodeId, top: NodeId) -> bool {
+        self.up(node).any(|above| above == top)
+    }
+
     /// Gives the node itself; of a base that was moved, the placeholder where its arc is.
     fn written_at(&self, node: NodeId) -> NodeId {
         if self.is_moved_base(node) {
@@ -211,12 +216,6 @@ impl Graph {
             waiting.extend(self.node(node).children.iter().rev());
         }
         list
-    }
-
-    /// Whether an implied class: its arc is written elsewhere.
-    pub(crate) fn is_implied(&self, node: NodeId) -> bool {
-        let found = self.node(node);
-        node != NodeId::ROOT && found.kind.is_class() && found.parent != found.origin
     }
 
     /// Counts the names between the prim and the one that the arc was written on.
@@ -347,12 +346,12 @@ impl Graph {
     fn insert_in_order(&mut self, new: NodeId, paths: &PathTable) {
         let parent = self.node(new).parent;
         let siblings = &self.node(parent).children;
-        let weaker_last = siblings.last().is_none_or(|&last| self.is_stronger(last, new, paths));
-        let at = if weaker_last {
-            siblings.len()
-        } else {
-            let weaker = siblings.iter().position(|&other| self.is_stronger(new, other, paths));
-            weaker.unwrap_or(siblings.len())
+        // The order of bases is not always transitive, so it matters what is asked first.
+        let stronger = |other: &NodeId| self.is_stronger(new, *other, paths);
+        let at = match (siblings.first(), siblings.last()) {
+            (Some(first), _) if stronger(first) => 0,
+            (_, Some(last)) if stronger(last) => siblings.iter().position(stronger).unwrap_or(siblings.len()),
+            _ => siblings.len(),
         };
         self.node_mut(parent).children.insert(at, new);
     }

@@ -183,8 +183,7 @@ impl Indexer<'_> {
                 self.add_written_classes(composer, node, ArcKind::Specializes);
             } else if let Some(node) = tasks.bases.pop_first() {
                 self.move_bases(composer, node);
-            } else if let Some(node) = tasks.implied_classes.pop_last() {
-                // Later nodes first: those below others before those above.
+            } else if let Some(node) = take_first_implied(composer, &self.graph, &mut tasks.implied_classes) {
                 self.imply_classes(composer, node);
             } else if let Some(node) = tasks.ancestral_sets.pop_first() {
                 self.add_ancestral_variant_tasks(composer, node);
@@ -257,8 +256,10 @@ impl Indexer<'_> {
         }
     }
 
-    pub(crate) fn imply_classes_later(&mut self, node: NodeId) {
-        self.tasks.implied_classes.insert(node);
+    /// Has a class, with those that it came through, implied upwards.
+    pub(crate) fn imply_class_later(&mut self, composer: &Composer<'_, '_, '_>, class: NodeId) {
+        let start = self.start_of_implied_classes(composer, class);
+        self.tasks.implied_classes.insert(start);
     }
 
     /// Adds a node for an arc with everything that follows of it; none if that would be a cycle or
@@ -315,8 +316,7 @@ impl Indexer<'_> {
     /// Lists what a new node brings: implied classes first, then what its specs write.
     fn add_tasks(&mut self, composer: &mut Composer<'_, '_, '_>, node: NodeId, options: ArcOptions) {
         if self.graph.node(node).kind.is_class() {
-            let start = self.start_of_implied_classes(composer, node);
-            self.tasks.implied_classes.insert(start);
+            self.imply_class_later(composer, node);
         } else if self.graph.has_class(node) {
             self.tasks.implied_classes.insert(node);
         }
@@ -502,6 +502,15 @@ fn variant_tasks(composer: &Composer<'_, '_, '_>, node: NodeId, site: Site) -> V
         position,
     };
     sets.map(task).collect()
+}
+
+/// Takes the strongest node whose classes are to be implied, but those below it first: what is implied
+/// first keeps its place, and places do not come twice.
+fn take_first_implied(composer: &mut Composer<'_, '_, '_>, graph: &Graph, tasks: &mut BTreeSet<NodeId>) -> Option<NodeId> {
+    composer.work += tasks.len();
+    let first = tasks.iter().copied().min_by(|&a, &b| graph.compare_children_first(a, b))?;
+    tasks.remove(&first);
+    Some(first)
 }
 
 /// Takes the task of the strongest node; of one node the set written furthest up, and the first there.

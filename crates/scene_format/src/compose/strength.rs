@@ -60,6 +60,15 @@ impl Graph {
         }
     }
 
+    /// Compares like [`Self::compare_in_tree`], but children come before their parents.
+    pub(crate) fn compare_children_first(&self, a: NodeId, b: NodeId) -> Ordering {
+        if self.is_below(a, b) || self.is_below(b, a) {
+            self.compare_in_tree(b, a)
+        } else {
+            self.compare_in_tree(a, b)
+        }
+    }
+
     fn compare_bases(&self, a: NodeId, b: NodeId, paths: &PathTable) -> Ordering {
         let (first, second) = (self.node(a), self.node(b));
         let ((root_a, steps_a), (root_b, steps_b)) = (self.origin_root(a), self.origin_root(b));
