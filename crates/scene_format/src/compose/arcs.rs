@@ -7,7 +7,7 @@ use super::graph::{ArcKind, NewArc, NodeId, Site};
 use super::indexer::{ArcOptions, Composer, Indexer, new_arc};
 use super::library::{FileId, LayerId, Library, StackId};
 use super::mapping::{PathMap, TimeMap};
-use super::paths::{PathId, Word};
+use super::paths::{PathId, Step, Word};
 use super::spec::{Arcs, AssetRef};
 use crate::diagnostic::Diagnostic;
 use crate::layer::{ListEdit, Spanned};
@@ -345,14 +345,14 @@ impl Indexer<'_> {
         source: Option<Site>,
     ) -> Option<NodeId> {
         let instance = self.graph.node(arc.parent).site;
-        let path = class_path(composer, instance.path, &arc.map)?;
+        let implied = arc.origin != arc.parent;
+        let path = class_path(composer, instance.path, &arc.map, implied)?;
         let site = Site {
             stack: instance.stack,
             path,
         };
         let children = &self.graph.node(arc.parent).children;
         let known = children.iter().copied().find(|&child| self.graph.node(child).site == site);
-        let implied = arc.origin != arc.parent;
         if let Some(known) = known {
             // Of two bases that are implied at the prim, the one of the stronger origin counts.
             let yields = arc.kind == ArcKind::Specializes && arc.parent == NodeId::ROOT && implied && {
@@ -378,10 +378,21 @@ impl Indexer<'_> {
     }
 }
 
-/// Finds the path that an instance takes opinions from through a class map. Of an instance in a variant
-/// it is the plain path: the variants of the class are chosen like those of any other target.
-fn class_path(composer: &mut Composer<'_, '_, '_>, instance: PathId, map: &PathMap) -> Option<PathId> {
+/// Finds the path that an instance takes opinions from through a class map.
+///
+/// - `implied`: of an instance in a variant, a class below the prim of the variant is looked for in the
+///   same variant. Where the arc itself is written there, it means the plain path.
+fn class_path(composer: &mut Composer<'_, '_, '_>, instance: PathId, map: &PathMap, implied: bool) -> Option<PathId> {
     let paths = &mut composer.library.paths;
     let plain = paths.without_variants(instance);
-    map.to_source(plain, paths)
+    let class = map.to_source(plain, paths)?;
+    if !implied || plain == instance {
+        return Some(class);
+    }
+    let mut body = instance;
+    while !matches!(paths.step(body), Step::Variant { .. }) {
+        body = paths.parent(body);
+    }
+    let prim = paths.without_variants(body);
+    Some(paths.replace_prefix(class, prim, body))
 }

@@ -52,6 +52,13 @@ impl Indexer<'_> {
                 sibling.origin == child && *sibling.map_to_parent == map
             });
             let class = known.or_else(|| {
+                // The composed map may still map what its parts, one after the other, do not.
+                let site = self.graph.node(target).site;
+                let paths = &mut composer.library.paths;
+                let inside = paths.without_variants(site.path);
+                let inside = transfer.to_source(inside, paths)?;
+                let inside = self.graph.node(child).map_to_parent.to_source(inside, paths)?;
+                transfer.to_target(inside, paths)?;
                 let found = self.graph.node(child);
                 let arc = NewArc {
                     kind: found.kind,
