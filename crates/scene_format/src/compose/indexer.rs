@@ -408,7 +408,7 @@ impl Indexer<'_> {
         let mut arcs = 1;
         loop {
             let paths = &mut composer.library.paths;
-            for above in graph.up(node) {
+            for above in graph.up_as_written(node) {
                 arcs += 1;
                 let other = graph.node(above).site;
                 let meets = other.stack == sought.stack
