@@ -1,10 +1,53 @@
 //! Implied classes: a class that a referenced prim inherits is looked up in every place on the way
 //! up, so that the outside can overrule it.
 
+use std::rc::Rc;
+
 use super::graph::{NewArc, NodeId};
 use super::indexer::{Composer, Indexer};
 use super::mapping::PathMap;
-use std::rc::Rc;
+use super::paths::{PathId, PathTable};
+
+/// Classes within classes up to here are carried exactly; each doubles what has to be asked.
+const MOST_EXACT: usize = 8;
+
+/// Carries paths from the place of a class to the place where the class is implied.
+struct Transfer {
+    /// Over the arc between the two places; below a class, over what leads from one class to the other.
+    map: PathMap,
+    /// The arc alone.
+    arc: Rc<PathMap>,
+    /// Arcs of the classes that lead to this place, the first one first.
+    classes: Vec<Rc<PathMap>>,
+}
+
+impl Transfer {
+    /// Tells whether a path can be carried, by the first `count` classes and over the arc.
+    ///
+    /// The way is: over a class to its instance, over the arc, and back over the implied class. Maps that
+    /// are composed into one may forget that a step on such a way is not possible.
+    fn reaches(&self, path: PathId, count: usize, paths: &mut PathTable) -> bool {
+        let Some(last) = count.checked_sub(1) else {
+            return self.arc.to_target(path, paths).is_some();
+        };
+        if !self.reaches(path, last, paths) {
+            return false;
+        }
+        let instance = self.classes[last].to_target(path, paths);
+        instance.is_some_and(|instance| self.reaches(instance, last, paths))
+    }
+
+    /// Whether an implied class has a place where it is implied.
+    fn implies(&self, target: PathId, class: &PathMap, paths: &mut PathTable) -> bool {
+        let count = self.classes.len().min(MOST_EXACT);
+        let plain = paths.without_variants(target);
+        let Some(instance) = self.arc.to_source(plain, paths) else {
+            return false;
+        };
+        let inside = class.to_source(instance, paths);
+        self.reaches(instance, count, paths) && inside.is_some_and(|inside| self.reaches(inside, count, paths))
+    }
+}
 
 impl Indexer<'_> {
     /// Implies the classes of a node at its parent.
@@ -15,7 +58,12 @@ impl Indexer<'_> {
         if !self.graph.has_class(node) {
             return;
         }
-        let transfer = self.graph.node(node).map_to_parent.keeping_others();
+        let map = self.graph.node(node).map_to_parent.keeping_others();
+        let transfer = Transfer {
+            arc: Rc::new(map.clone()),
+            map,
+            classes: Vec::new(),
+        };
         self.imply_tree(composer, parent, node, &transfer, true);
     }
 
@@ -28,7 +76,7 @@ impl Indexer<'_> {
         composer: &mut Composer<'_, '_, '_>,
         target: NodeId,
         source: NodeId,
-        transfer: &PathMap,
+        transfer: &Transfer,
         is_start: bool,
     ) {
         let holder = self.graph.moved_base_of(source).unwrap_or(source);
@@ -45,20 +93,18 @@ impl Indexer<'_> {
             if continues {
                 continue;
             }
-            let map = implied_map(composer, transfer, &self.graph.node(child).map_to_parent);
+            let map = implied_map(composer, &transfer.map, &self.graph.node(child).map_to_parent);
             let siblings = &self.graph.node(target).children;
             let known = siblings.iter().copied().find(|&sibling| {
                 let sibling = self.graph.node(sibling);
                 sibling.origin == child && *sibling.map_to_parent == map
             });
             let class = known.or_else(|| {
-                // The composed map may still map what its parts, one after the other, do not.
-                let site = self.graph.node(target).site;
-                let paths = &mut composer.library.paths;
-                let inside = paths.without_variants(site.path);
-                let inside = transfer.to_source(inside, paths)?;
-                let inside = self.graph.node(child).map_to_parent.to_source(inside, paths)?;
-                transfer.to_target(inside, paths)?;
+                let class = &self.graph.node(child).map_to_parent;
+                let path = self.graph.node(target).site.path;
+                if !transfer.implies(path, class, &mut composer.library.paths) {
+                    return None;
+                }
                 let found = self.graph.node(child);
                 let arc = NewArc {
                     kind: found.kind,
@@ -77,8 +123,15 @@ impl Indexer<'_> {
             {
                 let class = self.graph.moved_base_of(class).unwrap_or(class);
                 let paths = &mut composer.library.paths;
-                let up = transfer.after(&self.graph.node(child).map_to_parent, paths);
-                let transfer = map.inverse().after(&up, paths);
+                let class_map = Rc::clone(&self.graph.node(child).map_to_parent);
+                let up = transfer.map.after(&class_map, paths);
+                let mut classes = transfer.classes.clone();
+                classes.push(class_map);
+                let transfer = Transfer {
+                    map: map.inverse().after(&up, paths),
+                    arc: Rc::clone(&transfer.arc),
+                    classes,
+                };
                 self.imply_tree(composer, class, child, &transfer, false);
             }
         }

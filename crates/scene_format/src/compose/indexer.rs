@@ -408,8 +408,9 @@ impl Indexer<'_> {
         let mut arcs = 1;
         loop {
             let paths = &mut composer.library.paths;
-            for above in graph.up_as_written(node) {
-                arcs += 1;
+            // Through where bases are written: below the first node they would seem one arc away.
+            arcs += graph.up_as_written(node).count();
+            for above in graph.up(node) {
                 let other = graph.node(above).site;
                 let meets = other.stack == sought.stack
                     && (paths.has_prefix(other.path, sought.path) || paths.has_prefix(sought.path, other.path));
