@@ -95,9 +95,10 @@ impl Indexer<'_> {
             }
             let map = implied_map(composer, &transfer.map, &self.graph.node(child).map_to_parent);
             let siblings = &self.graph.node(target).children;
+            // A base that was moved from there stands in for the placeholder, not for what it implies.
             let known = siblings.iter().copied().find(|&sibling| {
-                let sibling = self.graph.node(sibling);
-                sibling.origin == child && *sibling.map_to_parent == map
+                let found = self.graph.node(sibling);
+                found.origin == child && *found.map_to_parent == map && !self.graph.is_moved_base(sibling)
             });
             let class = known.or_else(|| {
                 let class = &self.graph.node(child).map_to_parent;
