@@ -166,12 +166,16 @@ pub(crate) enum EditTrouble {
 impl EditTrouble {
     pub(crate) fn warning(self, name: &str) -> Diagnostic {
         match self {
-            Self::IdleDelete => {
-                Diagnostic::warning("delete-without-effect", format!("there is no `{name}` here to be deleted"))
-                    .note("`delete` removes what weaker layers of the same file list, not what comes through an arc")
-            }
-            Self::Dropped => Diagnostic::warning("list-drops-items", format!("a plain list in a stronger layer drops `{name}`"))
-                .note("a plain list replaces what is weaker; `Edit(prepend: ..)` adds to it"),
+            Self::IdleDelete => Diagnostic::warning(
+                "delete-without-effect",
+                format!("there is no `{name}` here to be deleted"),
+            )
+            .note("`delete` removes what weaker layers of the same file list, not what comes through an arc"),
+            Self::Dropped => Diagnostic::warning(
+                "list-drops-items",
+                format!("a plain list in a stronger layer drops `{name}`"),
+            )
+            .note("a plain list replaces what is weaker; `Edit(prepend: ..)` adds to it"),
         }
     }
 }
@@ -179,17 +183,17 @@ impl EditTrouble {
 impl<T> Combined<T> {
     /// Lists what deserves a warning, with its place.
     pub(crate) fn without_effect(&self, place: impl Fn(&T) -> Place) -> Vec<(Place, EditTrouble)> {
-        let idle = self.idle_deletes.iter().map(|item| (place(item), EditTrouble::IdleDelete));
+        let idle = self
+            .idle_deletes
+            .iter()
+            .map(|item| (place(item), EditTrouble::IdleDelete));
         let dropped = self.dropped.iter().map(|item| (place(item), EditTrouble::Dropped));
         idle.chain(dropped).collect()
     }
 }
 
 /// Combines opinions about a list, given strong to weak; items with one `key` are one.
-pub(crate) fn combine<T: Clone, K: Eq + Hash>(
-    edits: &[ListEdit<T>],
-    key: impl Fn(&T) -> K,
-) -> Combined<T> {
+pub(crate) fn combine<T: Clone, K: Eq + Hash>(edits: &[ListEdit<T>], key: impl Fn(&T) -> K) -> Combined<T> {
     let mut combined = Combined {
         items: Vec::new(),
         idle_deletes: Vec::new(),
@@ -313,7 +317,10 @@ impl Indexer<'_> {
     fn suggest_prims(&self, composer: &Composer<'_, '_, '_>, stack: StackId, error: Diagnostic) -> Diagnostic {
         let names = composer.library.top_level_prims(stack);
         match names.first() {
-            Some(first) => error.note(format!("its prims: {}; write `#{first}` behind the file's name", names.join(", "))),
+            Some(first) => error.note(format!(
+                "its prims: {}; write `#{first}` behind the file's name",
+                names.join(", ")
+            )),
             None => error.note("it has no prims"),
         }
     }
@@ -352,7 +359,10 @@ impl Indexer<'_> {
             path,
         };
         let children = &self.graph.node(arc.parent).children;
-        let known = children.iter().copied().find(|&child| self.graph.node(child).site == site);
+        let known = children
+            .iter()
+            .copied()
+            .find(|&child| self.graph.node(child).site == site);
         if let Some(known) = known {
             // Of two bases that are implied at the prim, the one of the stronger origin counts.
             let yields = arc.kind == ArcKind::Specializes && arc.parent == NodeId::ROOT && implied && {

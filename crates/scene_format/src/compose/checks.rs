@@ -136,18 +136,22 @@ fn check_class(library: &mut Library<'_, '_>, graph: &Graph, node: NodeId) {
         return;
     }
     let of_it = |other: &NodeId| *other == node || graph.origin_root(*other).0 == node;
-    let there = graph
-        .ids()
-        .filter(of_it)
-        .any(|other| subtree(graph, other).into_iter().any(|below| graph.node(below).has_specs));
+    let there = graph.ids().filter(of_it).any(|other| {
+        subtree(graph, other)
+            .into_iter()
+            .any(|below| graph.node(below).has_specs)
+    });
     if there {
         return;
     }
     let found = graph.node(node);
     let text = library.paths.text(found.site.path);
     let names = prims_beside(library, graph, node, found.site.path);
-    let mut warning = Diagnostic::warning("unknown-class", format!("there is no prim `{text}` to take anything from"))
-        .suggest(nearest(&text, names.iter().map(String::as_str)));
+    let mut warning = Diagnostic::warning(
+        "unknown-class",
+        format!("there is no prim `{text}` to take anything from"),
+    )
+    .suggest(nearest(&text, names.iter().map(String::as_str)));
     if let Some(place) = found.place {
         warning = warning.at(place);
     }

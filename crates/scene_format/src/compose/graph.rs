@@ -223,7 +223,9 @@ impl Graph {
         let Some(parent) = self.parent(node) else {
             return 0;
         };
-        paths.depth(self.node(parent).site.path).saturating_sub(self.node(node).depth)
+        paths
+            .depth(self.node(parent).site.path)
+            .saturating_sub(self.node(node).depth)
     }
 
     /// Gives the path that the arc targets, before the names of descendants were added.
@@ -285,7 +287,10 @@ impl Graph {
 
     /// Finds the node of a site whose opinions count.
     pub(crate) fn contributing_site(&self, site: Site) -> Option<NodeId> {
-        let found = self.nodes.iter().position(|node| node.site == site && node.contributes())?;
+        let found = self
+            .nodes
+            .iter()
+            .position(|node| node.site == site && node.contributes())?;
         Some(NodeId(found as u32))
     }
 
@@ -394,7 +399,11 @@ impl Graph {
                 has_specs: old.has_specs && library_has(site),
                 ancestral: id != NodeId::ROOT,
                 new: false,
-                children: old.children.iter().filter_map(|child| new_ids[child.0 as usize]).collect(),
+                children: old
+                    .children
+                    .iter()
+                    .filter_map(|child| new_ids[child.0 as usize])
+                    .collect(),
                 map_to_parent: Rc::clone(&old.map_to_parent),
                 map_to_root: Rc::clone(&old.map_to_root),
                 ..*old

@@ -444,7 +444,8 @@ impl Indexer<'_> {
     fn report_cycle(&self, composer: &mut Composer<'_, '_, '_>, site: Site, arc: &NewArc) {
         let target = composer.library.paths.text(site.path);
         let message = format!("`{}` leads back to `{target}`", arc.kind.word());
-        let error = Diagnostic::error("arc-cycle", message).note("a prim cannot be made of itself; break the circle at one of these arcs");
+        let error = Diagnostic::error("arc-cycle", message)
+            .note("a prim cannot be made of itself; break the circle at one of these arcs");
         self.report_at(composer, error, arc, true);
     }
 
@@ -452,7 +453,9 @@ impl Indexer<'_> {
     pub(crate) fn report_at(&self, composer: &mut Composer<'_, '_, '_>, error: Diagnostic, arc: &NewArc, chain: bool) {
         let library = &mut *composer.library;
         let mut error = error;
-        let place = arc.place.or_else(|| self.arc_places(arc.parent).first().map(|&(_, place)| place));
+        let place = arc
+            .place
+            .or_else(|| self.arc_places(arc.parent).first().map(|&(_, place)| place));
         if let Some(place) = place {
             error = error.at(place);
         }
@@ -507,15 +510,26 @@ fn variant_tasks(composer: &Composer<'_, '_, '_>, node: NodeId, site: Site) -> V
 
 /// Takes the strongest node whose classes are to be implied, but those below it first: what is implied
 /// first keeps its place, and places do not come twice.
-fn take_first_implied(composer: &mut Composer<'_, '_, '_>, graph: &Graph, tasks: &mut BTreeSet<NodeId>) -> Option<NodeId> {
+fn take_first_implied(
+    composer: &mut Composer<'_, '_, '_>,
+    graph: &Graph,
+    tasks: &mut BTreeSet<NodeId>,
+) -> Option<NodeId> {
     composer.work += tasks.len();
-    let first = tasks.iter().copied().min_by(|&a, &b| graph.compare_children_first(a, b))?;
+    let first = tasks
+        .iter()
+        .copied()
+        .min_by(|&a, &b| graph.compare_children_first(a, b))?;
     tasks.remove(&first);
     Some(first)
 }
 
 /// Takes the task of the strongest node; of one node the set written furthest up, and the first there.
-fn take_strongest(composer: &mut Composer<'_, '_, '_>, graph: &Graph, tasks: &mut Vec<VariantTask>) -> Option<VariantTask> {
+fn take_strongest(
+    composer: &mut Composer<'_, '_, '_>,
+    graph: &Graph,
+    tasks: &mut Vec<VariantTask>,
+) -> Option<VariantTask> {
     composer.work += tasks.len();
     let paths = &composer.library.paths;
     let best = (0..tasks.len()).min_by(|&a, &b| {

@@ -226,7 +226,11 @@ mod tests {
         let map = PathMap::subtree(class, instance, true, TimeMap::IDENTITY);
         assert_eq!(map.to_target(class, &mut paths), Some(instance));
         assert_eq!(map.to_target(other, &mut paths), Some(other));
-        assert_eq!(map.to_target(instance, &mut paths), None, "it would be taken for the class");
+        assert_eq!(
+            map.to_target(instance, &mut paths),
+            None,
+            "it would be taken for the class"
+        );
     }
 
     #[test]

@@ -25,10 +25,7 @@ impl Indexer<'_> {
         let Some((variant, place)) = self.selection(composer, task) else {
             return self.no_selection(task);
         };
-        let step = Step::Variant {
-            set: task.set,
-            variant,
-        };
+        let step = Step::Variant { set: task.set, variant };
         let paths = &mut composer.library.paths;
         let chosen = paths.join(task.owner, step);
         let body = Site {
@@ -43,7 +40,15 @@ impl Indexer<'_> {
             ..ArcOptions::default()
         };
         let map = PathMap::identity();
-        let arc = new_arc(ArcKind::Variants, task.node, task.node, map, task.position, depth, place);
+        let arc = new_arc(
+            ArcKind::Variants,
+            task.node,
+            task.node,
+            map,
+            task.position,
+            depth,
+            place,
+        );
         if self.add_arc(composer, body, &arc, options).is_some() {
             self.retry_variants();
         }
