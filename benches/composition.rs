@@ -70,7 +70,10 @@ fn compose(folder: &Path) -> Scene {
 
 /// Prints the least of three, which other work on the machine disturbs least.
 fn report(name: &str, folder: &Path) {
-    let costs: Vec<_> = (0..3).map(|_| compose(folder)).map(|scene| (scene.cost, scene.prims.len())).collect();
+    let costs: Vec<_> = (0..3)
+        .map(|_| compose(folder))
+        .map(|scene| (scene.cost, scene.prims.len()))
+        .collect();
     let reading = costs.iter().map(|(cost, _)| cost.reading).min().unwrap_or_default();
     let composing = costs.iter().map(|(cost, _)| cost.composing).min().unwrap_or_default();
     let (cost, prims) = costs[0];

@@ -26,13 +26,20 @@ fn shot() -> Folder {
 fn a_flat_scene_renders_the_same_picture() {
     let folder = shot();
     let flat = folder.succeed("flatten scene.ron");
-    assert!(flat.stdout.starts_with("#![enable(implicit_some)]\nLayer(\n"), "{}", flat.stdout);
+    assert!(
+        flat.stdout.starts_with("#![enable(implicit_some)]\nLayer(\n"),
+        "{}",
+        flat.stdout
+    );
     folder.write("flat.ron", &flat.stdout);
     assert_eq!(folder.succeed("flatten flat.ron").stdout, flat.stdout);
     folder.succeed("run scene.ron -q -o a.exr");
     folder.succeed("run flat.ron -q -o b.exr");
     // Not the scene's name, only its hash is in the file.
-    assert!(folder.bytes("a.exr") == folder.bytes("b.exr"), "the same scene, the same bits");
+    assert!(
+        folder.bytes("a.exr") == folder.bytes("b.exr"),
+        "the same scene, the same bits"
+    );
 }
 
 #[test]
@@ -106,6 +113,8 @@ Layer(prims: {
     let node = "/Model/node_0/Mesh";
     assert!(flat.contains("\"Mesh\""), "{flat}");
     folder.succeed("run scene.ron -q -o a.exr");
-    folder.succeed(&format!("run scene.ron -q -o b.exr --set {node}.MaterialBinding.target=\"/Red\""));
+    folder.succeed(&format!(
+        "run scene.ron -q -o b.exr --set {node}.MaterialBinding.target=\"/Red\""
+    ));
     assert!(folder.bytes("a.exr") != folder.bytes("b.exr"));
 }

@@ -155,9 +155,9 @@ fn describe_arcs(scene: &Scene, prim: &Prim, opinion: &Opinion) -> String {
         if found.arc == ArcKind::Local {
             continue;
         }
-        let place = found
-            .arc_place
-            .map_or(String::new(), |place| format!(" (from {})", scene.sources.describe_line(place)));
+        let place = found.arc_place.map_or(String::new(), |place| {
+            format!(" (from {})", scene.sources.describe_line(place))
+        });
         parts.push(format!("{} {}{place}", found.arc.word(), found.path));
     }
     if parts.is_empty() {

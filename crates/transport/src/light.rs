@@ -261,9 +261,10 @@ impl LightTable {
     pub fn environment(&self) -> Option<(Rgb, f32)> {
         let row = self.environment? as usize;
         match &self.lights[row] {
-            Light::Environment { radiance } => {
-                Some((*radiance, self.sampled_choice.probability(row) * warp::PDF_UNIFORM_SPHERE))
-            }
+            Light::Environment { radiance } => Some((
+                *radiance,
+                self.sampled_choice.probability(row) * warp::PDF_UNIFORM_SPHERE,
+            )),
             _ => None,
         }
     }

@@ -225,14 +225,10 @@ impl Indexer<'_> {
         if !found.contributes() {
             return;
         }
-        // An arc to a prim below the top level needs the payloads above its target to find it.
-        let above_target = self
-            .frame
-            .is_some_and(|frame| frame.is_above_target(self.graph.root().site));
-        if which == AssetArcKind::Payloads && !composer.load_payloads && !above_target {
+        if which == AssetArcKind::Payloads && !composer.load_payloads && self.has_scene_path(composer, node) {
             return;
         }
-        let site = found.site;
+        let site = self.graph.node(node).site;
         for (position, asset) in composer.library.asset_list(site, which).into_iter().enumerate() {
             if let Some((target, arc)) = self.asset_arc(composer, node, which, position as u32, &asset) {
                 let options = ArcOptions {
@@ -241,6 +237,36 @@ impl Indexer<'_> {
                 };
                 self.add_arc(composer, target, &arc, options);
             }
+        }
+    }
+
+    /// Whether the path of a node stands for a prim of the scene. An arc to a prim below the top level
+    /// needs the arcs above its target to find it, which stand for none.
+    fn has_scene_path(&self, composer: &mut Composer<'_, '_, '_>, node: NodeId) -> bool {
+        let paths = &mut composer.library.paths;
+        let mut path = paths.without_variants(self.graph.node(node).site.path);
+        let mut carry = |kind, map: &PathMap, path| {
+            let inside = matches!(kind, ArcKind::References | ArcKind::Payloads);
+            let narrow = inside.then(|| map.dropping_others());
+            narrow.as_ref().unwrap_or(map).to_target(path, paths)
+        };
+        let (mut graph, mut node, mut frame) = (&self.graph, node, self.frame);
+        loop {
+            for above in graph.up(node).filter(|&above| above != NodeId::ROOT) {
+                let found = graph.node(above);
+                match carry(found.kind, &found.map_to_parent, path) {
+                    Some(image) => path = image,
+                    None => return false,
+                }
+            }
+            let Some(around) = frame else {
+                return true;
+            };
+            match carry(around.arc.kind, &around.arc.map, path) {
+                Some(image) => path = image,
+                None => return false,
+            }
+            (graph, node, frame) = (around.graph, around.parent, around.previous);
         }
     }
 
@@ -326,14 +352,30 @@ impl Indexer<'_> {
         source: Option<Site>,
     ) -> Option<NodeId> {
         let instance = self.graph.node(arc.parent).site;
-        let path = class_path(composer, instance.path, &arc.map)?;
+        let implied = arc.origin != arc.parent;
+        let path = class_path(composer, instance.path, &arc.map, implied)?;
         let site = Site {
             stack: instance.stack,
             path,
         };
         let children = &self.graph.node(arc.parent).children;
-        if let Some(&known) = children.iter().find(|&&child| self.graph.node(child).site == site) {
-            return Some(known);
+        let known = children
+            .iter()
+            .copied()
+            .find(|&child| self.graph.node(child).site == site);
+        if let Some(known) = known {
+            // Of two bases that are implied at the prim, the one of the stronger origin counts.
+            let yields = arc.kind == ArcKind::Specializes && arc.parent == NodeId::ROOT && implied && {
+                let origin = self.graph.node(known).origin;
+                self.graph.compare_in_tree(arc.origin, origin).is_lt()
+            };
+            if !yields {
+                return Some(known);
+            }
+            self.graph.make_subtree_inert(known, &composer.library.paths);
+        }
+        if arc.kind == ArcKind::Specializes && (arc.parent != NodeId::ROOT || self.frame.is_some()) {
+            return self.add_base(composer, site, arc);
         }
         let counts = path != instance.path && source != Some(site);
         let options = ArcOptions {
@@ -346,19 +388,21 @@ impl Indexer<'_> {
     }
 }
 
-/// Finds the path that an instance takes opinions from through a class map; of an instance in a
-/// variant, the class is looked for in the same variant if it lies below its prim.
-fn class_path(composer: &mut Composer<'_, '_, '_>, instance: PathId, map: &PathMap) -> Option<PathId> {
+/// Finds the path that an instance takes opinions from through a class map.
+///
+/// - `implied`: of an instance in a variant, a class below the prim of the variant is looked for in the
+///   same variant. Where the arc itself is written there, it means the plain path.
+fn class_path(composer: &mut Composer<'_, '_, '_>, instance: PathId, map: &PathMap, implied: bool) -> Option<PathId> {
     let paths = &mut composer.library.paths;
-    if !paths.is_in_variant(instance) {
-        return map.to_source(instance, paths);
+    let plain = paths.without_variants(instance);
+    let class = map.to_source(plain, paths)?;
+    if !implied || plain == instance {
+        return Some(class);
     }
     let mut body = instance;
     while !matches!(paths.step(body), Step::Variant { .. }) {
         body = paths.parent(body);
     }
-    let plain = paths.without_variants(instance);
-    let class = map.to_source(plain, paths)?;
     let prim = paths.without_variants(body);
     Some(paths.replace_prefix(class, prim, body))
 }

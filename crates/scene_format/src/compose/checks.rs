@@ -14,7 +14,7 @@ pub(crate) fn check_graph(library: &mut Library<'_, '_>, graph: &Graph) {
     for node in graph.ids().filter(|&node| node != NodeId::ROOT) {
         let found = graph.node(node);
         match found.kind {
-            ArcKind::References | ArcKind::Payloads if is_new(graph, node) => check_target(library, graph, node),
+            ArcKind::References | ArcKind::Payloads if found.new => check_target(library, graph, node),
             ArcKind::Variants => check_variant(library, graph, node),
             ArcKind::Inherits | ArcKind::Specializes if !found.ancestral && found.origin == found.parent => {
                 check_class(library, graph, node);
@@ -22,13 +22,6 @@ pub(crate) fn check_graph(library: &mut Library<'_, '_>, graph: &Graph) {
             _ => {}
         }
     }
-}
-
-/// Whether a node came with an arc of this prim, not with one of its parent.
-fn is_new(graph: &Graph, node: NodeId) -> bool {
-    graph
-        .up(node)
-        .any(|above| above != NodeId::ROOT && !graph.node(above).ancestral)
 }
 
 fn subtree(graph: &Graph, top: NodeId) -> Vec<NodeId> {
@@ -43,13 +36,14 @@ fn subtree(graph: &Graph, top: NodeId) -> Vec<NodeId> {
 
 fn check_target(library: &mut Library<'_, '_>, graph: &Graph, node: NodeId) {
     let found = graph.node(node);
+    // Of an arc that was written above its node, what counts is whether the target is there.
+    let above = graph.depth_below_introduction(node, &library.paths) > 0;
     let there = subtree(graph, node).into_iter().any(|below| {
-        let site = graph.node(below).site;
-        if graph.node(below).has_specs {
-            return true;
+        if !above {
+            return graph.node(below).has_specs;
         }
         let path = graph.path_at_introduction(below, &library.paths);
-        found.ancestral && library.stack(site.stack).has_specs(path)
+        library.stack(graph.node(below).site.stack).has_specs(path)
     });
     if there {
         return;

@@ -1,10 +1,53 @@
 //! Implied classes: a class that a referenced prim inherits is looked up in every place on the way
 //! up, so that the outside can overrule it.
 
-use super::graph::{ArcKind, NewArc, NodeId};
+use std::rc::Rc;
+
+use super::graph::{NewArc, NodeId};
 use super::indexer::{Composer, Indexer};
 use super::mapping::PathMap;
-use std::rc::Rc;
+use super::paths::{PathId, PathTable};
+
+/// Classes within classes up to here are carried exactly; each doubles what has to be asked.
+const MOST_EXACT: usize = 8;
+
+/// Carries paths from the place of a class to the place where the class is implied.
+struct Transfer {
+    /// Over the arc between the two places; below a class, over what leads from one class to the other.
+    map: PathMap,
+    /// The arc alone.
+    arc: Rc<PathMap>,
+    /// Arcs of the classes that lead to this place, the first one first.
+    classes: Vec<Rc<PathMap>>,
+}
+
+impl Transfer {
+    /// Tells whether a path can be carried, by the first `count` classes and over the arc.
+    ///
+    /// The way is: over a class to its instance, over the arc, and back over the implied class. Maps that
+    /// are composed into one may forget that a step on such a way is not possible.
+    fn reaches(&self, path: PathId, count: usize, paths: &mut PathTable) -> bool {
+        let Some(last) = count.checked_sub(1) else {
+            return self.arc.to_target(path, paths).is_some();
+        };
+        if !self.reaches(path, last, paths) {
+            return false;
+        }
+        let instance = self.classes[last].to_target(path, paths);
+        instance.is_some_and(|instance| self.reaches(instance, last, paths))
+    }
+
+    /// Whether an implied class has a place where it is implied.
+    fn implies(&self, target: PathId, class: &PathMap, paths: &mut PathTable) -> bool {
+        let count = self.classes.len().min(MOST_EXACT);
+        let plain = paths.without_variants(target);
+        let Some(instance) = self.arc.to_source(plain, paths) else {
+            return false;
+        };
+        let inside = class.to_source(instance, paths);
+        self.reaches(instance, count, paths) && inside.is_some_and(|inside| self.reaches(inside, count, paths))
+    }
+}
 
 impl Indexer<'_> {
     /// Implies the classes of a node at its parent.
@@ -12,11 +55,15 @@ impl Indexer<'_> {
         let Some(parent) = self.graph.parent(node) else {
             return;
         };
-        // Classes below a base that was moved are implied from where it came from.
-        if self.graph.is_moved_base(node) || !self.graph.has_child(node, ArcKind::is_class) {
+        if !self.graph.has_class(node) {
             return;
         }
-        let transfer = self.graph.node(node).map_to_parent.keeping_others();
+        let map = self.graph.node(node).map_to_parent.keeping_others();
+        let transfer = Transfer {
+            arc: Rc::new(map.clone()),
+            map,
+            classes: Vec::new(),
+        };
         self.imply_tree(composer, parent, node, &transfer, true);
     }
 
@@ -29,10 +76,11 @@ impl Indexer<'_> {
         composer: &mut Composer<'_, '_, '_>,
         target: NodeId,
         source: NodeId,
-        transfer: &PathMap,
+        transfer: &Transfer,
         is_start: bool,
     ) {
-        for child in self.graph.node(source).children.clone() {
+        let holder = self.graph.moved_base_of(source).unwrap_or(source);
+        for child in self.graph.node(holder).children.clone() {
             if !self.graph.node(child).kind.is_class() {
                 continue;
             }
@@ -45,13 +93,19 @@ impl Indexer<'_> {
             if continues {
                 continue;
             }
-            let map = implied_map(composer, transfer, &self.graph.node(child).map_to_parent);
+            let map = implied_map(composer, &transfer.map, &self.graph.node(child).map_to_parent);
             let siblings = &self.graph.node(target).children;
+            // A base that was moved from there stands in for the placeholder, not for what it implies.
             let known = siblings.iter().copied().find(|&sibling| {
-                let sibling = self.graph.node(sibling);
-                sibling.origin == child && *sibling.map_to_parent == map
+                let found = self.graph.node(sibling);
+                found.origin == child && *found.map_to_parent == map && !self.graph.is_moved_base(sibling)
             });
             let class = known.or_else(|| {
+                let class = &self.graph.node(child).map_to_parent;
+                let path = self.graph.node(target).site.path;
+                if !transfer.implies(path, class, &mut composer.library.paths) {
+                    return None;
+                }
                 let found = self.graph.node(child);
                 let arc = NewArc {
                     kind: found.kind,
@@ -66,11 +120,19 @@ impl Indexer<'_> {
                 self.add_class(composer, &arc, Some(source))
             });
             if let Some(class) = class
-                && self.graph.has_child(child, ArcKind::is_class)
+                && self.graph.has_class(child)
             {
+                let class = self.graph.moved_base_of(class).unwrap_or(class);
                 let paths = &mut composer.library.paths;
-                let up = transfer.after(&self.graph.node(child).map_to_parent, paths);
-                let transfer = map.inverse().after(&up, paths);
+                let class_map = Rc::clone(&self.graph.node(child).map_to_parent);
+                let up = transfer.map.after(&class_map, paths);
+                let mut classes = transfer.classes.clone();
+                classes.push(class_map);
+                let transfer = Transfer {
+                    map: map.inverse().after(&up, paths),
+                    arc: Rc::clone(&transfer.arc),
+                    classes,
+                };
                 self.imply_tree(composer, class, child, &transfer, false);
             }
         }

@@ -88,11 +88,16 @@ pub(crate) struct Node {
     pub(crate) place: Option<Place>,
     /// Its opinions do not count; it is there for what hangs on it.
     pub(crate) inert: bool,
+    /// Steps of the shallowest path of this place that may not say anything; 0 if all may. Above it,
+    /// the place may still select variants.
+    pub(crate) restricted: u16,
     /// Nothing at or below it says anything.
     pub(crate) culled: bool,
     pub(crate) has_specs: bool,
     /// The arc was written on an ancestor of the prim.
     pub(crate) ancestral: bool,
+    /// It is not in the tree of the parent.
+    pub(crate) new: bool,
     /// Strong to weak.
     pub(crate) children: Vec<NodeId>,
 }
@@ -101,6 +106,11 @@ impl Node {
     /// Whether its opinions count, if it has any.
     pub(crate) fn contributes(&self) -> bool {
         !self.inert && !self.culled
+    }
+
+    /// Whether the place may say something at a path that is its own or begins it.
+    pub(crate) fn contributes_at(&self, path: PathId, paths: &PathTable) -> bool {
+        self.restricted == 0 || self.restricted > paths.steps(path)
     }
 }
 
@@ -126,9 +136,11 @@ impl Graph {
                 depth: 0,
                 place: None,
                 inert: false,
+                restricted: 0,
                 culled: false,
                 has_specs: library.stack(site.stack).has_specs(site.path),
                 ancestral: false,
+                new: true,
                 children: Vec::new(),
             }],
         }
@@ -169,6 +181,32 @@ impl Graph {
         self.up(node).any(|above| above == top)
     }
 
+    /// Gives the node itself; of a base that was moved, the placeholder where its arc is.
+    fn written_at(&self, node: NodeId) -> NodeId {
+        if self.is_moved_base(node) {
+            self.node(node).origin
+        } else {
+            node
+        }
+    }
+
+    /// Lists a node and those that it came through: like [`Self::up`], but from a base that was
+    /// moved on to where its arc is.
+    pub(crate) fn up_as_written(&self, node: NodeId) -> impl Iterator<Item = NodeId> {
+        std::iter::successors(Some(node), |&node| {
+            if self.is_moved_base(node) {
+                Some(self.node(node).origin)
+            } else {
+                self.parent(node)
+            }
+        })
+    }
+
+    /// Whether `node` is `top` or came through it.
+    pub(crate) fn came_through(&self, node: NodeId, top: NodeId) -> bool {
+        self.up_as_written(node).any(|above| above == top)
+    }
+
     /// Lists all nodes, strong to weak.
     pub(crate) fn strong_to_weak(&self) -> Vec<NodeId> {
         let mut list = Vec::with_capacity(self.nodes.len());
@@ -178,12 +216,6 @@ impl Graph {
             waiting.extend(self.node(node).children.iter().rev());
         }
         list
-    }
-
-    /// Whether an implied class: its arc is written elsewhere.
-    pub(crate) fn is_implied(&self, node: NodeId) -> bool {
-        let found = self.node(node);
-        node != NodeId::ROOT && found.kind.is_class() && found.parent != found.origin
     }
 
     /// Counts the names between the prim and the one that the arc was written on.
@@ -201,9 +233,21 @@ impl Graph {
         paths.ancestor(self.node(node).site.path, self.depth_below_introduction(node, paths))
     }
 
-    pub(crate) fn has_child(&self, node: NodeId, fits: impl Fn(ArcKind) -> bool) -> bool {
-        let children = &self.node(node).children;
-        children.iter().any(|&child| fits(self.node(child).kind))
+    /// Whether a node has a class or base; those of a placeholder hang on the base that was moved.
+    pub(crate) fn has_class(&self, node: NodeId) -> bool {
+        let children = &self.node(self.moved_base_of(node).unwrap_or(node)).children;
+        children.iter().any(|&child| self.node(child).kind.is_class())
+    }
+
+    /// Finds the base that was moved below the first node from a placeholder.
+    pub(crate) fn moved_base_of(&self, node: NodeId) -> Option<NodeId> {
+        if self.node(node).kind != ArcKind::Specializes {
+            return None;
+        }
+        let bases = self.root().children.iter().rev().copied();
+        bases
+            .take_while(|&base| self.node(base).kind == ArcKind::Specializes)
+            .find(|&base| self.node(base).origin == node && self.is_moved_base(base))
     }
 
     /// Follows the origins of an implied class to the arc that is written; gives also the steps.
@@ -219,12 +263,12 @@ impl Graph {
     /// Of a class and the classes that it came through, written at one depth of the namespace: gives
     /// the node that has the first of them, and that first one.
     pub(crate) fn start_of_class_hierarchy(&self, node: NodeId, paths: &PathTable) -> (NodeId, NodeId) {
-        let depth = self.depth_below_introduction(node, paths);
-        let (mut instance, mut class) = (node, node);
+        let (mut instance, mut class) = (self.written_at(node), node);
+        let depth = self.depth_below_introduction(instance, paths);
         while self.node(instance).kind.is_class() && self.depth_below_introduction(instance, paths) == depth {
             class = instance;
             match self.parent(instance) {
-                Some(parent) => instance = parent,
+                Some(parent) => instance = self.written_at(parent),
                 None => break,
             }
         }
@@ -265,9 +309,11 @@ impl Graph {
             depth: arc.depth,
             place: arc.place,
             inert: false,
+            restricted: 0,
             culled: false,
             has_specs,
             ancestral: false,
+            new: true,
             children: Vec::new(),
         });
         self.insert_in_order(id, paths);
@@ -291,6 +337,7 @@ impl Graph {
                 node.parent = shift(node.parent);
                 node.origin = shift(node.origin);
             }
+            node.new = true;
             node.children.iter_mut().for_each(|child| *child = shift(*child));
             // A parent comes before its children.
             let above = Rc::clone(&self.node(node.parent).map_to_root);
@@ -304,43 +351,59 @@ impl Graph {
     fn insert_in_order(&mut self, new: NodeId, paths: &PathTable) {
         let parent = self.node(new).parent;
         let siblings = &self.node(parent).children;
-        let weaker_last = siblings.last().is_none_or(|&last| self.is_stronger(last, new, paths));
-        let at = if weaker_last {
-            siblings.len()
-        } else {
-            let weaker = siblings.iter().position(|&other| self.is_stronger(new, other, paths));
-            weaker.unwrap_or(siblings.len())
+        // The order of bases is not always transitive, so it matters what is asked first.
+        let stronger = |other: &NodeId| self.is_stronger(new, *other, paths);
+        let at = match (siblings.first(), siblings.last()) {
+            (Some(first), _) if stronger(first) => 0,
+            (_, Some(last)) if stronger(last) => siblings.iter().position(stronger).unwrap_or(siblings.len()),
+            _ => siblings.len(),
         };
         self.node_mut(parent).children.insert(at, new);
     }
 
     /// Makes the tree that a child of the prim begins with: the same arcs, one name further.
-    pub(crate) fn for_child(&self, name: Word, paths: &mut PathTable, library_has: impl Fn(Site) -> bool) -> Self {
-        let kept = self.kept();
-        let mut new_ids = vec![NodeId::ROOT; self.nodes.len()];
-        let mut count = 0;
-        for id in self.ids() {
-            if kept[id.0 as usize] {
-                new_ids[id.0 as usize] = NodeId(count);
-                count += 1;
-            }
+    ///
+    /// - `finished`: the tree is complete; what nobody needs goes, and the rest is numbered strong to
+    ///   weak. That order decides which of two arcs is followed first.
+    pub(crate) fn for_child(
+        &self,
+        name: Word,
+        finished: bool,
+        paths: &mut PathTable,
+        library_has: impl Fn(Site) -> bool,
+    ) -> Self {
+        let old_ids: Vec<NodeId> = if finished {
+            let kept = self.kept();
+            let mut list = self.strong_to_weak();
+            list.retain(|id| kept[id.0 as usize]);
+            list
+        } else {
+            self.ids().collect()
+        };
+        let mut new_ids = vec![None; self.nodes.len()];
+        for (new, old) in old_ids.iter().enumerate() {
+            new_ids[old.0 as usize] = Some(NodeId(new as u32));
         }
-        let moved = |node: NodeId| new_ids[node.0 as usize];
-        let mut nodes = Vec::with_capacity(count as usize);
-        for id in self.ids().filter(|id| kept[id.0 as usize]) {
+        let moved = |node: NodeId| new_ids[node.0 as usize].unwrap_or(NodeId::ROOT);
+        let mut nodes = Vec::with_capacity(old_ids.len());
+        for id in old_ids {
             let old = self.node(id);
             let site = Site {
                 path: paths.join(old.site.path, Step::Child(name)),
                 ..old.site
             };
-            let children = old.children.iter().filter(|child| kept[child.0 as usize]);
             nodes.push(Node {
                 site,
                 parent: moved(old.parent),
                 origin: moved(old.origin),
                 has_specs: old.has_specs && library_has(site),
                 ancestral: id != NodeId::ROOT,
-                children: children.map(|&child| moved(child)).collect(),
+                new: false,
+                children: old
+                    .children
+                    .iter()
+                    .filter_map(|child| new_ids[child.0 as usize])
+                    .collect(),
                 map_to_parent: Rc::clone(&old.map_to_parent),
                 map_to_root: Rc::clone(&old.map_to_root),
                 ..*old
@@ -364,20 +427,16 @@ impl Graph {
 
     /// Marks the subtrees that say nothing.
     pub(crate) fn cull(&mut self, scene: StackId, paths: &PathTable) {
-        // Children come after their parents.
-        for id in self.ids().collect::<Vec<_>>().into_iter().rev() {
-            let below_base = self
-                .up(id)
-                .any(|above| above != id && self.node(above).kind == ArcKind::Specializes);
-            let is_base = self.node(id).kind == ArcKind::Specializes;
-            if !below_base && !is_base && self.can_be_culled(id, scene, paths) {
+        for id in self.strong_to_weak().into_iter().rev() {
+            if self.can_be_culled(id, scene, paths) {
                 self.node_mut(id).culled = true;
+                self.restrict(id, paths);
             }
         }
     }
 
     /// Whether nothing at or below a node says anything, and nobody needs it.
-    pub(crate) fn can_be_culled(&self, node: NodeId, scene: StackId, paths: &PathTable) -> bool {
+    fn can_be_culled(&self, node: NodeId, scene: StackId, paths: &PathTable) -> bool {
         let found = self.node(node);
         if found.culled {
             return true;
@@ -395,12 +454,25 @@ impl Graph {
         silent && found.children.iter().all(|&child| self.node(child).culled)
     }
 
+    /// Makes the opinions of a node not count.
+    pub(crate) fn make_inert(&mut self, node: NodeId, paths: &PathTable) {
+        self.node_mut(node).inert = true;
+        self.restrict(node, paths);
+    }
+
     /// Makes the opinions of a subtree not count.
-    pub(crate) fn make_inert(&mut self, top: NodeId) {
+    pub(crate) fn make_subtree_inert(&mut self, top: NodeId, paths: &PathTable) {
         let mut waiting = vec![top];
         while let Some(node) = waiting.pop() {
-            self.node_mut(node).inert = true;
+            self.make_inert(node, paths);
             waiting.extend_from_slice(&self.node(node).children);
+        }
+    }
+
+    fn restrict(&mut self, node: NodeId, paths: &PathTable) {
+        let found = self.node_mut(node);
+        if found.restricted == 0 {
+            found.restricted = paths.steps(found.site.path);
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Builds the tree of one prim: the work list of LIVRPS.
 //!
 //! The algorithm is that of OpenUSD's prim indexing, so that ties fall as they do there: the tree of
-//! the parent with one more name, then arcs in the order references, payloads, inherits, implied
-//! classes, specializes, implied bases, variants. Each new node brings tasks of its own.
+//! the parent with one more name, then arcs in the order references, payloads, inherits, specializes,
+//! bases to be moved, implied classes, variants. Each new node brings tasks of its own.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -11,7 +11,7 @@ use super::arcs::AssetArcKind;
 use super::graph::{ArcKind, Graph, NewArc, NodeId, Site};
 use super::library::Library;
 use super::mapping::PathMap;
-use super::paths::{Step, Word};
+use super::paths::{PathId, Step, Word};
 use crate::diagnostic::Diagnostic;
 use crate::source::Place;
 
@@ -39,31 +39,26 @@ impl Composer<'_, '_, '_> {
 pub(crate) struct Frame<'f> {
     /// What the arc targets; the tree begins above it in the namespace and grows towards it.
     requested: Site,
-    parent: NodeId,
-    arc: &'f NewArc,
+    pub(crate) parent: NodeId,
+    pub(crate) arc: &'f NewArc,
     skip_duplicates: bool,
-    graph: &'f Graph,
-    previous: Option<&'f Frame<'f>>,
+    pub(crate) graph: &'f Graph,
+    pub(crate) previous: Option<&'f Frame<'f>>,
 }
 
 /// How a tree is to be built.
 #[derive(Clone, Copy)]
 pub(crate) struct BuildOptions {
-    /// How many names this tree is above the one that was asked for.
-    pub(crate) ancestor_levels: u16,
-    pub(crate) imply_bases: bool,
-    pub(crate) choose_variants: bool,
-    pub(crate) root_contributes: bool,
+    /// Else that is left to the tree around, where more is known.
+    choose_variants: bool,
 }
 
 impl BuildOptions {
     /// For a prim of the scene.
-    pub(crate) const WHOLE: Self = Self {
-        ancestor_levels: 0,
-        imply_bases: true,
-        choose_variants: true,
-        root_contributes: true,
-    };
+    pub(crate) const WHOLE: Self = Self { choose_variants: true };
+
+    /// For the target of an arc.
+    const WITHIN: Self = Self { choose_variants: false };
 }
 
 /// What to do when an arc is added.
@@ -73,13 +68,16 @@ pub(crate) struct ArcOptions {
     /// The target lies below the top level, so arcs of its ancestors bring opinions too.
     pub(crate) with_ancestors: bool,
     pub(crate) skip_duplicates: bool,
-    pub(crate) skip_implied_bases: bool,
-    pub(crate) skip_written_arcs: bool,
+    /// Nothing follows of the node.
+    pub(crate) without_tasks: bool,
 }
 
+/// A set of variants to choose from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct VariantTask {
     pub(crate) node: NodeId,
+    /// Where the set is written: the path of the node or one that begins it.
+    pub(crate) owner: PathId,
     pub(crate) set: Word,
     pub(crate) position: u32,
 }
@@ -90,11 +88,19 @@ struct Tasks {
     references: BTreeSet<NodeId>,
     payloads: BTreeSet<NodeId>,
     inherits: BTreeSet<NodeId>,
-    implied_classes: BTreeSet<NodeId>,
     specializes: BTreeSet<NodeId>,
-    implied_bases: BTreeSet<NodeId>,
-    variant_sets: BTreeSet<NodeId>,
-    variants: Vec<VariantTask>,
+    bases: BTreeSet<NodeId>,
+    implied_classes: BTreeSet<NodeId>,
+    ancestral_sets: BTreeSet<NodeId>,
+    ancestral_variants: Variants,
+    sets: BTreeSet<NodeId>,
+    variants: Variants,
+}
+
+/// Sets of variants that are left to choose from.
+#[derive(Default)]
+struct Variants {
+    waiting: Vec<VariantTask>,
     /// Sets without a selection so far; a variant that is chosen may bring one.
     unselected: Vec<VariantTask>,
 }
@@ -117,12 +123,11 @@ pub(crate) fn build_graph(
     parent: Option<&Graph>,
     frame: Option<&Frame<'_>>,
 ) -> Graph {
-    let mut graph = match composer.library.paths.step(site.path) {
+    let graph = match composer.library.paths.step(site.path) {
         Step::Root => return Graph::new(site, composer.library),
         Step::Variant { .. } => Graph::new(site, composer.library),
         Step::Child(name) => child_graph(composer, site, name, options, parent, frame),
     };
-    graph.node_mut(NodeId::ROOT).inert |= !options.root_contributes;
     composer.nodes += graph.len();
     let mut indexer = Indexer {
         graph,
@@ -133,6 +138,9 @@ pub(crate) fn build_graph(
     };
     indexer.add_tasks_below(composer, NodeId::ROOT, ArcOptions::default());
     indexer.run(composer);
+    if frame.is_none() {
+        indexer.graph.cull(site.stack, &composer.library.paths);
+    }
     indexer.graph
 }
 
@@ -153,20 +161,14 @@ fn child_graph(
                 path: composer.library.paths.parent(site.path),
                 ..site
             };
-            let above_options = BuildOptions {
-                ancestor_levels: options.ancestor_levels + 1,
-                choose_variants: true,
-                root_contributes: true,
-                ..options
-            };
-            built = build_graph(composer, above, above_options, None, frame);
+            built = build_graph(composer, above, options, None, frame);
             &built
         }
     };
     let library = &mut *composer.library;
     let mut paths = std::mem::take(&mut library.paths);
-    let mut graph = parent.for_child(name, &mut paths, |site| library.stack(site.stack).has_specs(site.path));
-    graph.cull(site.stack, &paths);
+    let has_specs = |site: Site| library.stack(site.stack).has_specs(site.path);
+    let graph = parent.for_child(name, frame.is_none(), &mut paths, has_specs);
     library.paths = paths;
     graph
 }
@@ -184,17 +186,19 @@ impl Indexer<'_> {
                 self.add_asset_arcs(composer, node, AssetArcKind::Payloads);
             } else if let Some(node) = tasks.inherits.pop_first() {
                 self.add_written_classes(composer, node, ArcKind::Inherits);
-            } else if let Some(node) = tasks.implied_classes.pop_last() {
-                // Later nodes first: those below others before those above.
-                self.imply_classes(composer, node);
             } else if let Some(node) = tasks.specializes.pop_first() {
                 self.add_written_classes(composer, node, ArcKind::Specializes);
-            } else if let Some(node) = tasks.implied_bases.pop_first() {
-                self.imply_bases(composer, node);
-            } else if let Some(node) = tasks.variant_sets.pop_first() {
+            } else if let Some(node) = tasks.bases.pop_first() {
+                self.move_bases(composer, node);
+            } else if let Some(node) = take_first_implied(composer, &self.graph, &mut tasks.implied_classes) {
+                self.imply_classes(composer, node);
+            } else if let Some(node) = tasks.ancestral_sets.pop_first() {
+                self.add_ancestral_variant_tasks(composer, node);
+            } else if let Some(task) = take_strongest(composer, &self.graph, &mut tasks.ancestral_variants.waiting) {
+                self.choose_variant(composer, task);
+            } else if let Some(node) = tasks.sets.pop_first() {
                 self.add_variant_tasks(composer, node);
-            } else if !tasks.variants.is_empty() {
-                let task = self.strongest_variant_task(composer);
+            } else if let Some(task) = take_strongest(composer, &self.graph, &mut tasks.variants.waiting) {
                 self.choose_variant(composer, task);
             } else {
                 return;
@@ -218,40 +222,51 @@ impl Indexer<'_> {
     }
 
     fn add_variant_tasks(&mut self, composer: &mut Composer<'_, '_, '_>, node: NodeId) {
-        if !self.graph.node(node).contributes() {
-            return;
-        }
-        let sets = composer.library.variant_sets(self.graph.node(node).site);
-        for (position, set) in sets.into_iter().enumerate() {
-            self.tasks.variants.push(VariantTask {
-                node,
-                set,
-                position: position as u32,
-            });
+        let found = self.graph.node(node);
+        if found.contributes() {
+            let tasks = variant_tasks(composer, node, found.site);
+            self.tasks.variants.waiting.extend(tasks);
         }
     }
 
-    /// Takes the task of the strongest node, and of its strongest set.
-    fn strongest_variant_task(&mut self, composer: &mut Composer<'_, '_, '_>) -> VariantTask {
-        let tasks = &self.tasks.variants;
-        composer.work += tasks.len();
-        let mut best = 0;
-        for (number, task) in tasks.iter().enumerate().skip(1) {
-            let order = self.graph.compare_in_tree(task.node, tasks[best].node);
-            if order.then(task.position.cmp(&tasks[best].position)).is_lt() {
-                best = number;
+    /// Lists the sets that are written above the path of a node, up to the next variant: those further
+    /// up were chosen from before it was.
+    fn add_ancestral_variant_tasks(&mut self, composer: &mut Composer<'_, '_, '_>, node: NodeId) {
+        let found = self.graph.node(node);
+        let mut path = composer.library.paths.parent(found.site.path);
+        while path != PathId::ROOT {
+            if found.contributes_at(path, &composer.library.paths) {
+                let tasks = variant_tasks(composer, node, Site { path, ..found.site });
+                self.tasks.ancestral_variants.waiting.extend(tasks);
+                if matches!(composer.library.paths.step(path), Step::Variant { .. }) {
+                    break;
+                }
             }
+            path = composer.library.paths.parent(path);
         }
-        self.tasks.variants.remove(best)
     }
 
     pub(crate) fn no_selection(&mut self, task: VariantTask) {
-        self.tasks.unselected.push(task);
+        let tasks = &mut self.tasks;
+        let list = if task.owner == self.graph.node(task.node).site.path {
+            &mut tasks.variants
+        } else {
+            &mut tasks.ancestral_variants
+        };
+        list.unselected.push(task);
     }
 
     /// Looks once more at the sets without a selection, since there are new opinions.
     pub(crate) fn retry_variants(&mut self) {
-        self.tasks.variants.append(&mut self.tasks.unselected);
+        for list in [&mut self.tasks.ancestral_variants, &mut self.tasks.variants] {
+            list.waiting.append(&mut list.unselected);
+        }
+    }
+
+    /// Has a class, with those that it came through, implied upwards.
+    pub(crate) fn imply_class_later(&mut self, composer: &Composer<'_, '_, '_>, class: NodeId) {
+        let start = self.start_of_implied_classes(composer, class);
+        self.tasks.implied_classes.insert(start);
     }
 
     /// Adds a node for an arc with everything that follows of it; none if that would be a cycle or
@@ -280,53 +295,40 @@ impl Indexer<'_> {
                 graph: &self.graph,
                 previous: self.frame,
             };
-            let within = BuildOptions {
-                ancestor_levels: self.options.ancestor_levels,
-                imply_bases: false,
-                choose_variants: false,
-                root_contributes: !options.inert,
-            };
-            let target = build_graph(composer, site, within, None, Some(&frame));
+            let target = build_graph(composer, site, BuildOptions::WITHIN, None, Some(&frame));
             self.graph.append(target, arc, &mut composer.library.paths)
         } else {
             let has_specs = composer.library.stack(site.stack).has_specs(site.path);
             let new = self.graph.insert(site, arc, &mut composer.library.paths, has_specs);
-            self.graph.node_mut(new).inert = options.inert;
+            if options.inert {
+                // Nor does it say anything of the prims above.
+                let node = self.graph.node_mut(new);
+                node.inert = true;
+                node.restricted = 1;
+            }
             new
         };
-        let scene = self.site.stack;
-        if self.graph.can_be_culled(new, scene, &composer.library.paths) {
-            self.graph.node_mut(new).culled = true;
-        } else {
-            let mut above = arc.parent;
-            while self.graph.node(above).culled {
-                self.graph.node_mut(above).culled = false;
-                above = self.graph.node(above).parent;
-            }
+        let mut above = arc.parent;
+        while self.graph.node(above).culled {
+            let node = self.graph.node_mut(above);
+            node.culled = false;
+            above = node.parent;
         }
-        options.skip_written_arcs |= options.with_ancestors;
-        self.add_tasks(composer, new, options);
+        if !options.without_tasks {
+            self.add_tasks(composer, new, options);
+        }
         Some(new)
     }
 
     /// Lists what a new node brings: implied classes first, then what its specs write.
     fn add_tasks(&mut self, composer: &mut Composer<'_, '_, '_>, node: NodeId, options: ArcOptions) {
-        if !options.skip_implied_bases {
-            let kind = self.graph.node(node).kind;
-            if kind.is_class() {
-                let start = self.start_of_implied_classes(composer, node);
-                self.tasks.implied_classes.insert(start);
-            } else if self.graph.has_child(node, ArcKind::is_class) {
-                self.tasks.implied_classes.insert(node);
-            }
-            if self.options.imply_bases {
-                let is_base = |&above: &NodeId| self.graph.node(above).kind == ArcKind::Specializes;
-                if let Some(top) = self.graph.up(node).filter(is_base).last() {
-                    self.tasks.implied_bases.insert(top);
-                } else if self.graph.has_child(node, |kind| kind == ArcKind::Specializes) {
-                    self.tasks.implied_bases.insert(node);
-                }
-            }
+        if self.graph.node(node).kind.is_class() {
+            self.imply_class_later(composer, node);
+        } else if self.graph.has_class(node) {
+            self.tasks.implied_classes.insert(node);
+        }
+        if options.with_ancestors && self.frame.is_none() {
+            self.tasks.bases.insert(node);
         }
         self.add_tasks_below(composer, node, options);
     }
@@ -336,15 +338,18 @@ impl Indexer<'_> {
         while let Some(node) = waiting.pop() {
             let found = self.graph.node(node);
             waiting.extend_from_slice(&found.children);
+            if options.with_ancestors && self.options.choose_variants {
+                self.tasks.ancestral_sets.insert(node);
+            }
             if !(found.has_specs && found.contributes()) {
                 continue;
             }
             let written = composer.library.written_arcs(found.site);
             if self.options.choose_variants && written.variants {
-                self.tasks.variant_sets.insert(node);
+                self.tasks.sets.insert(node);
             }
-            if options.skip_implied_bases || options.skip_written_arcs {
-                // The arcs were followed where the subtree comes from.
+            if options.with_ancestors {
+                // Its arcs were followed when its own tree was built.
                 continue;
             }
             for (is_written, list) in [
@@ -410,13 +415,17 @@ impl Indexer<'_> {
         let mut arcs = 1;
         loop {
             let paths = &mut composer.library.paths;
+            // Through where bases are written: below the first node they would seem one arc away.
+            arcs += graph.up_as_written(node).count();
             for above in graph.up(node) {
-                arcs += 1;
                 let other = graph.node(above).site;
                 let meets = other.stack == sought.stack
                     && (paths.has_prefix(other.path, sought.path) || paths.has_prefix(sought.path, other.path));
                 if meets {
-                    self.report_cycle(composer, site, arc);
+                    // Of an implied class nobody wrote that it should be here.
+                    if arc.origin == arc.parent {
+                        self.report_cycle(composer, site, arc);
+                    }
                     return false;
                 }
             }
@@ -495,20 +504,49 @@ impl Indexer<'_> {
     }
 }
 
-impl<'f> Frame<'f> {
-    /// The tree around, its node with the arc, and how the arc carries paths.
-    pub(crate) fn around(&self) -> (&'f Graph, NodeId, &'f PathMap) {
-        (self.graph, self.parent, &self.arc.map)
-    }
+fn variant_tasks(composer: &Composer<'_, '_, '_>, node: NodeId, site: Site) -> Vec<VariantTask> {
+    let sets = composer.library.variant_sets(site).into_iter().zip(0..);
+    let task = |(set, position)| VariantTask {
+        node,
+        owner: site.path,
+        set,
+        position,
+    };
+    sets.map(task).collect()
+}
 
-    pub(crate) fn previous(&self) -> Option<&'f Frame<'f>> {
-        self.previous
-    }
+/// Takes the strongest node whose classes are to be implied, but those below it first: what is implied
+/// first keeps its place, and places do not come twice.
+fn take_first_implied(
+    composer: &mut Composer<'_, '_, '_>,
+    graph: &Graph,
+    tasks: &mut BTreeSet<NodeId>,
+) -> Option<NodeId> {
+    composer.work += tasks.len();
+    let first = tasks
+        .iter()
+        .copied()
+        .min_by(|&a, &b| graph.compare_children_first(a, b))?;
+    tasks.remove(&first);
+    Some(first)
+}
 
-    /// Whether an arc to a prim below the top level brings an ancestor of its target at the moment.
-    pub(crate) fn is_above_target(&self, site: Site) -> bool {
-        matches!(self.arc.kind, ArcKind::References | ArcKind::Payloads) && site != self.requested
-    }
+/// Takes the task of the strongest node; of one node the set written furthest up, and the first there.
+fn take_strongest(
+    composer: &mut Composer<'_, '_, '_>,
+    graph: &Graph,
+    tasks: &mut Vec<VariantTask>,
+) -> Option<VariantTask> {
+    composer.work += tasks.len();
+    let paths = &composer.library.paths;
+    let best = (0..tasks.len()).min_by(|&a, &b| {
+        let (a, b) = (&tasks[a], &tasks[b]);
+        let by_node = graph.compare_in_tree(a.node, b.node);
+        by_node
+            .then_with(|| paths.steps(a.owner).cmp(&paths.steps(b.owner)))
+            .then(a.position.cmp(&b.position))
+    })?;
+    Some(tasks.remove(best))
 }
 
 /// Makes the description of an arc.

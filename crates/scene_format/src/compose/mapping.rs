@@ -32,6 +32,9 @@ impl TimeMap {
     }
 }
 
+/// The beginning of a path and what takes its place. What has no partner has no image.
+type Pair = (Option<PathId>, Option<PathId>);
+
 /// Carries paths from a source namespace to a target namespace, by the beginnings of paths.
 ///
 /// Of the pairs whose source begins a path, the longest counts. A path whose image lies below the
@@ -39,7 +42,7 @@ impl TimeMap {
 /// the map can be undone wherever it is defined. The rules are those of OpenUSD's map functions.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PathMap {
-    pairs: Vec<(PathId, PathId)>,
+    pairs: Vec<Pair>,
     /// Whether paths that no pair covers stay as they are; else they have no image.
     keeps_others: bool,
     pub(crate) time: TimeMap,
@@ -57,11 +60,11 @@ impl PathMap {
     /// Maps one subtree to another.
     pub(crate) fn subtree(from: PathId, to: PathId, keeps_others: bool, time: TimeMap) -> Self {
         let mut map = Self {
-            pairs: vec![(from, to)],
+            pairs: vec![(Some(from), Some(to))],
             keeps_others,
             time,
         };
-        map.simplify();
+        map.tidy();
         map
     }
 
@@ -70,8 +73,16 @@ impl PathMap {
             keeps_others: true,
             ..self.clone()
         };
-        map.simplify();
+        map.tidy();
         map
+    }
+
+    /// The map without what stays as it is, unless nothing else is left.
+    pub(crate) fn dropping_others(&self) -> Self {
+        Self {
+            keeps_others: self.pairs.is_empty() && self.keeps_others,
+            ..self.clone()
+        }
     }
 
     fn is_identity(&self) -> bool {
@@ -88,28 +99,28 @@ impl PathMap {
         self.carry(path, paths, |(from, to)| (to, from))
     }
 
-    fn carry(
-        &self,
-        path: PathId,
-        paths: &mut PathTable,
-        turn: impl Fn((PathId, PathId)) -> (PathId, PathId),
-    ) -> Option<PathId> {
-        let mut best: Option<(PathId, PathId)> = None;
-        for &pair in &self.pairs {
-            let (from, to) = turn(pair);
-            let longer = best.is_none_or(|(other, _)| paths.steps(from) >= paths.steps(other));
+    fn carry(&self, path: PathId, paths: &mut PathTable, turn: impl Fn(Pair) -> Pair) -> Option<PathId> {
+        let mut best: Option<(usize, PathId)> = None;
+        for (number, &pair) in self.pairs.iter().enumerate() {
+            let Some(from) = turn(pair).0 else {
+                continue;
+            };
+            let longer = best.is_none_or(|(_, other)| paths.steps(from) >= paths.steps(other));
             if longer && paths.has_prefix(path, from) {
-                best = Some((from, to));
+                best = Some((number, from));
             }
         }
         let (image, covered) = match best {
-            Some((from, to)) => (paths.replace_prefix(path, from, to), paths.steps(to)),
+            Some((number, from)) => {
+                let to = turn(self.pairs[number]).1?;
+                (paths.replace_prefix(path, from, to), paths.steps(to))
+            }
             None if self.keeps_others => (path, 0),
             None => return None,
         };
-        let taken = self.pairs.iter().any(|&pair| {
-            let (from, to) = turn(pair);
-            best != Some((from, to)) && paths.steps(to) > covered && paths.has_prefix(image, to)
+        let taken = self.pairs.iter().enumerate().any(|(number, &pair)| {
+            let longer = |to: PathId| paths.steps(to) > covered && paths.has_prefix(image, to);
+            best.is_none_or(|(other, _)| other != number) && turn(pair).1.is_some_and(longer)
         });
         (!taken).then_some(image)
     }
@@ -123,17 +134,16 @@ impl PathMap {
         if inner.is_identity() {
             return Self { time, ..self.clone() };
         }
-        let mut pairs: Vec<(PathId, PathId)> = Vec::new();
+        let mut pairs: Vec<Pair> = Vec::new();
         for &(from, to) in &inner.pairs {
-            if let Some(to) = self.to_target(to, paths) {
-                pairs.push((from, to));
-            }
+            // What has no image must not be taken for something that stays as it is.
+            pairs.push((from, to.and_then(|to| self.to_target(to, paths))));
         }
         for &(from, to) in &self.pairs {
-            if let Some(from) = inner.to_source(from, paths)
-                && !pairs.iter().any(|&(other, _)| other == from)
+            if let Some(from) = from.and_then(|from| inner.to_source(from, paths))
+                && !pairs.iter().any(|&(other, _)| other == Some(from))
             {
-                pairs.push((from, to));
+                pairs.push((Some(from), to));
             }
         }
         let mut map = Self {
@@ -141,7 +151,8 @@ impl PathMap {
             keeps_others: self.keeps_others && inner.keeps_others,
             time,
         };
-        map.simplify();
+        map.drop_idle(paths);
+        map.tidy();
         map
     }
 
@@ -156,12 +167,34 @@ impl PathMap {
                 scale,
             },
         };
-        map.simplify();
+        map.tidy();
         map
     }
 
+    /// Drops sources without a target that would have no image anyway.
+    fn drop_idle(&mut self, paths: &mut PathTable) {
+        let mut number = 0;
+        while let Some(&pair) = self.pairs.get(number) {
+            let idle = match pair {
+                (None, None) => true,
+                (Some(from), None) => {
+                    self.pairs.remove(number);
+                    let image = self.to_target(from, paths);
+                    self.pairs.insert(number, pair);
+                    image.is_none()
+                }
+                _ => false,
+            };
+            if idle {
+                self.pairs.remove(number);
+            } else {
+                number += 1;
+            }
+        }
+    }
+
     /// Puts the pairs in one order, so that equal maps compare equal.
-    fn simplify(&mut self) {
+    fn tidy(&mut self) {
         self.pairs.sort_unstable();
         self.pairs.dedup();
         if self.keeps_others && self.pairs.iter().all(|(from, to)| from == to) {

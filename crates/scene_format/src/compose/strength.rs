@@ -1,7 +1,7 @@
 //! Which of two nodes is stronger.
 //!
 //! The order is that of OpenUSD's strength ordering; for the ties among bases, which are moved below
-//! the first node, see `specialize.rs`.
+//! the first node, see `bases.rs`.
 
 use std::cmp::Ordering;
 
@@ -60,11 +60,20 @@ impl Graph {
         }
     }
 
+    /// Compares like [`Self::compare_in_tree`], but children come before their parents.
+    pub(crate) fn compare_children_first(&self, a: NodeId, b: NodeId) -> Ordering {
+        if self.is_below(a, b) || self.is_below(b, a) {
+            self.compare_in_tree(b, a)
+        } else {
+            self.compare_in_tree(a, b)
+        }
+    }
+
     fn compare_bases(&self, a: NodeId, b: NodeId, paths: &PathTable) -> Ordering {
         let (first, second) = (self.node(a), self.node(b));
         let ((root_a, steps_a), (root_b, steps_b)) = (self.origin_root(a), self.origin_root(b));
         // A base of a base is weaker, however deep it was written.
-        let nested = self.is_below(root_a, root_b) || self.is_below(root_b, root_a);
+        let nested = self.came_through(root_a, root_b) || self.came_through(root_b, root_a);
         if !nested && first.depth != second.depth {
             return second.depth.cmp(&first.depth);
         }
@@ -72,10 +81,12 @@ impl Graph {
         // The copy in the outer place is stronger than the one that was moved as it is.
         let implied = |node: NodeId| self.node(node).site != self.node(self.node(node).origin).site;
         if first.origin == second.origin {
-            if !written(a) && !written(b) {
-                return implied(b).cmp(&implied(a));
-            }
-            return first.position.cmp(&second.position);
+            let by_copy = if written(a) || written(b) {
+                Ordering::Equal
+            } else {
+                implied(b).cmp(&implied(a))
+            };
+            return by_copy.then(first.position.cmp(&second.position));
         }
         if root_a != root_b {
             return self.compare_in_tree(root_a, root_b);
@@ -100,5 +111,6 @@ impl Graph {
                 }
             })
             .then_with(|| self.compare_in_tree(first.origin, second.origin))
+            .then(first.position.cmp(&second.position))
     }
 }

@@ -7,7 +7,9 @@ use serde_json::Value;
 use crate::vocabulary;
 
 fn cases() -> Vec<Vec<(String, String)>> {
-    let lines = include_str!("named.jsonl").lines().chain(include_str!("public.jsonl").lines());
+    let lines = include_str!("named.jsonl")
+        .lines()
+        .chain(include_str!("public.jsonl").lines());
     lines
         .map(|line| {
             let case: Value = serde_json::from_str(line).unwrap();
