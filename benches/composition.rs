@@ -3,6 +3,8 @@
 //! `cargo bench --bench composition` prints for each size the time to read the files, and that of composing as a
 //! multiple of it.
 
+#![allow(clippy::unwrap_used, reason = "a benchmark that meets an error should fail")]
+
 use bevy_app::App;
 use bevy_ecs::reflect::AppTypeRegistry;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -62,7 +64,7 @@ fn referenced_scene(references: usize) -> TempDir {
 
 fn compose(folder: &Path) -> Scene {
     let mut app = App::empty();
-    app.add_plugins(VocabularyPlugin);
+    app.init_resource::<AppTypeRegistry>().add_plugins(VocabularyPlugin);
     let registry = app.world().resource::<AppTypeRegistry>().read();
     let schema = Schema::new(&registry, is_scene_component).unwrap();
     load(&folder.join("root.ron"), &schema, &Options::default()).unwrap_or_else(|errors| panic!("{errors}"))

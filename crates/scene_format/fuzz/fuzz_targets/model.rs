@@ -12,7 +12,7 @@ use scene_format::{
 /// Reads bytes as the model file `name`; panics where a sound program would not.
 pub(crate) fn read_model(name: &str, bytes: &[u8]) {
     let mut app = App::empty();
-    app.add_plugins(VocabularyPlugin);
+    app.init_resource::<AppTypeRegistry>().add_plugins(VocabularyPlugin);
     let registry = app.world().resource::<AppTypeRegistry>().read();
     let schema = Schema::new(&registry, |found| {
         found.contains::<ReflectComponent>()

@@ -117,16 +117,6 @@ impl PathTable {
             })
     }
 
-    /// Finds a path without variants, if it was ever named.
-    pub(crate) fn find(&self, text: &str) -> Option<PathId> {
-        let mut path = PathId::ROOT;
-        for name in text.strip_prefix('/')?.split('/') {
-            let word = *self.word_numbers.get(name)?;
-            path = *self.numbers.get(&(path, Step::Child(word)))?;
-        }
-        Some(path)
-    }
-
     pub(crate) fn parent(&self, path: PathId) -> PathId {
         self.entry(path).parent
     }
@@ -265,8 +255,6 @@ mod tests {
         assert_eq!(paths.replace_prefix(plain, ring, gold), inside);
         assert_eq!(paths.ancestor(inside, 1), gold);
         assert_eq!(paths.text(paths.ancestor(inside, 2)), "/World");
-        assert_eq!(paths.find("/World/Ring"), Some(ring));
-        assert_eq!(paths.find("/World/Rung"), None);
         assert!(paths.has_prefix(inside, ring) && !paths.has_prefix(ring, inside));
     }
 }

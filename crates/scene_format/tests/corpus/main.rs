@@ -3,6 +3,8 @@
 //! A line of `named.jsonl` and `public.jsonl` is a case: the files, the arguments, and the answer as
 //! [`flatten_json`] gives it, places of opinions included, or the code of the error.
 
+#![allow(clippy::unwrap_used, reason = "a test that meets an error should fail")]
+
 mod mutations;
 mod vocabulary;
 

@@ -24,11 +24,6 @@ pub(crate) fn load_in(folder: &Path, options: &Options) -> Result<Scene, Diagnos
     load(&folder.join("root.ron"), &schema(&registry), options)
 }
 
-/// Loads files of which the first is `root.ron`.
-pub(crate) fn load_files(files: &[(&str, &str)], options: &Options) -> Result<Scene, Diagnostics> {
-    load_in(folder(files).path(), options)
-}
-
 /// Takes the folder out of a message, so that it is the same wherever the test runs.
 pub(crate) fn without_folder(text: &str, folder: &Path) -> String {
     let canonical = folder.canonicalize().unwrap();

@@ -1,5 +1,7 @@
 //! Scenes as a program meets them: text in, prims or messages out.
 
+#![allow(clippy::unwrap_used, reason = "a test that meets an error should fail")]
+
 mod arc_messages;
 mod composed;
 mod explaining;
