@@ -1,7 +1,7 @@
 //! Photons: storing them in the world against writing a `Vec`, and emitting and tracing them.
 //!
 //! `photon_map/store` overwrites an existing pool of entities, which is what the second and later passes do; beside it
-//! the same photons are written to a `Vec`. `cargo bench --bench photon_map`.
+//! the same photons are written to a `Vec`. `photon_map/memory` says what a stored photon takes. `cargo bench --bench photon_map`.
 
 #![expect(
     clippy::print_stdout,
@@ -13,7 +13,7 @@ use bevy_ecs::system::SystemState;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DAffine3, DVec3, Vec2};
 use pipeline_data::{CausticPhoton, Photon};
-use pipeline_stages::photon_map::{PhotonPool, store_in_pool};
+use pipeline_stages::photon_map::{PhotonPool, caustic_map, store_in_pool};
 use radiometry::{Rgb, SampleStream};
 use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DiffuseBsdf, Microsurface};
 use spatial::{Geometry, Instance, RayScene, Shape};
@@ -139,5 +139,39 @@ fn trace(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, store, trace);
+/// Bytes that this process holds at present, where the system tells.
+fn resident_bytes() -> Option<usize> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kibibytes: usize = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024)
+}
+
+/// A million photons may take no more than this each, in the world and in the map over them.
+const MOST_BYTES: f64 = 160.0;
+
+/// Not a time: what a photon takes when it is stored and can be found.
+fn memory(_: &mut Criterion) {
+    const N: usize = 1_000_000;
+    let Some(before) = resident_bytes() else { return };
+    let mut world = World::new();
+    let mut source = photons(N);
+    for (i, photon) in source.iter_mut().enumerate() {
+        photon.position = [(i % 1000) as f32, (i / 1000) as f32, 0.0];
+    }
+    world.spawn_batch(source.iter().map(|photon| (*photon, CausticPhoton)));
+    let map = caustic_map(&source).expect("finite photons make a tree");
+    drop(source);
+    let after = resident_bytes().unwrap_or(before);
+    let each = after.saturating_sub(before) as f64 / N as f64;
+    println!(
+        "photon_map/memory: {each:.1} bytes a photon, {} of them in the map",
+        map.memory_bytes() / N
+    );
+    assert!(each <= MOST_BYTES, "a photon takes {each} bytes");
+    drop(black_box((world, map)));
+}
+
+// Memory first: afterwards the allocator holds pages that nobody uses.
+criterion_group!(benches, memory, store, trace);
 criterion_main!(benches);

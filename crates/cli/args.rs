@@ -23,6 +23,10 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Load and check a scene, render nothing
     Check(CheckArgs),
+    /// Write a composed scene as one layer without arcs
+    Flatten(FlattenArgs),
+    /// Say why a value is what it is: every opinion about it, and why each loser loses
+    Explain(ExplainArgs),
     /// List what a scene can say: components, fields, types, units, ranges, defaults
     Schema(SchemaArgs),
     /// List schedules, sets and systems in the order they run
@@ -55,6 +59,9 @@ pub(crate) struct SceneArgs {
     /// Leave payloads out
     #[arg(long)]
     pub(crate) no_payloads: bool,
+    /// Raise or lower a limit that protects against hostile files; a wrong NAME lists them all
+    #[arg(long, value_name = "NAME=N", value_parser = parse::limit)]
+    pub(crate) limit: Vec<(String, usize)>,
 }
 
 /// How to render.
@@ -129,6 +136,26 @@ pub(crate) struct CheckArgs {
     /// Treat warnings as errors
     #[arg(long)]
     pub(crate) strict: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "Prints RON that composes to the same scene when it lies beside it; \
+                        `--json` prints values, relationships, and whose opinions they are, for tools.")]
+pub(crate) struct FlattenArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Print JSON, errors too
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct ExplainArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The field to explain; without COMPONENT the one component that has it
+    #[arg(value_name = "/PRIM.COMPONENT.FIELD")]
+    pub(crate) question: String,
 }
 
 #[derive(Args, Debug)]

@@ -11,6 +11,8 @@ mod check;
 mod compare;
 mod compare_text;
 mod exit;
+mod explain;
+mod flatten;
 mod graph;
 mod interrupt;
 mod outputs;
@@ -33,6 +35,8 @@ fn main() -> ExitCode {
     let ended = match Cli::parse().command {
         Command::Run(options) => run::execute(&options),
         Command::Check(options) => check::execute(&options),
+        Command::Flatten(options) => flatten::execute(&options),
+        Command::Explain(options) => explain::execute(&options),
         Command::Schema(options) => schema::execute(&options),
         Command::Stages(options) => stages::execute(&options),
         Command::Profile(options) => profile::execute(&options),

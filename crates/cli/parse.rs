@@ -87,6 +87,21 @@ pub(crate) fn crop(text: &str) -> Result<[u32; 4], String> {
     }
 }
 
+/// A limit of scenes: `prims=2000000`.
+pub(crate) fn limit(text: &str) -> Result<(String, usize), String> {
+    let (name, value) = text
+        .split_once('=')
+        .ok_or("give a name and a number, such as prims=2000000")?;
+    if !scene_format::Limits::NAMES.contains(&name) {
+        let names = scene_format::Limits::NAMES.join(", ");
+        return Err(format!("there is no limit `{name}`; there are {names}"));
+    }
+    match value.parse() {
+        Ok(value) => Ok((name.to_owned(), value)),
+        Err(_) => Err("give a whole number from 0".into()),
+    }
+}
+
 /// A number that is neither infinite nor NaN.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -129,6 +144,14 @@ mod tests {
         assert_eq!(crop("0, 1,2,3"), Ok([0, 1, 2, 3]));
         for bad in ["", "0,0,1", "0,0,0,1", "5,0,1,1", "0,0,1,1,1", "-1,0,1,1", "a,b,c,d"] {
             assert!(crop(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn limits_have_names() {
+        assert_eq!(limit("prims=5"), Ok(("prims".to_owned(), 5)));
+        for bad in ["prims", "prms=5", "prims=-1", "prims=many", "=", ""] {
+            assert!(limit(bad).is_err(), "{bad}");
         }
     }
 

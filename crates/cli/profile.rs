@@ -4,6 +4,7 @@ use crate::args::ProfileArgs;
 use crate::exit::Failure;
 use crate::profiling::Profiler;
 use crate::run;
+use crate::stages::short_path;
 use crate::terminal::print;
 use pipeline_core::{Counters, Profile};
 use std::fmt::Write;
@@ -20,7 +21,7 @@ pub(crate) fn execute(options: &ProfileArgs) -> Result<(), Failure> {
 }
 
 fn tables(profile: &Profile, counters: &Counters) -> String {
-    let mut text = profile.table();
+    let mut text = profile.table(short_path);
     let width = counters.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max(7);
     let _ = writeln!(text, "\n{:width$} {:>15}", "counter", "value");
     for (name, value) in counters.iter() {

@@ -2,6 +2,7 @@
 
 use crate::args::RenderArgs;
 use crate::exit::Failure;
+use crate::stages::short_path;
 use pipeline_core::{Profile, ProfileLayer};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -44,7 +45,7 @@ impl Profiler {
             write_text(path, &self.profile.json())?;
         }
         if let Some(path) = &self.trace {
-            write_text(path, &self.profile.trace_json())?;
+            write_text(path, &self.profile.trace_json(short_path))?;
         }
         Ok([&self.table, &self.trace].into_iter().flatten().cloned().collect())
     }

@@ -4,9 +4,12 @@ use crate::args::{RenderArgs, SceneArgs};
 use crate::exit::{Failure, titled};
 use crate::terminal::{say, use_colour};
 use bevy_app::App;
+use bevy_ecs::reflect::AppTypeRegistry;
 use pipeline_core::{CorePlugin, Outcome, RenderClock, Report};
 use pipeline_data::RenderRequest;
 use pipeline_stages::DefaultStages;
+use pipeline_stages::load::is_scene_component;
+use scene_format::{Diagnostics, Limits, Options, Scene, Schema};
 use std::path::PathBuf;
 
 /// The renderer with all its stages and no scene.
@@ -18,18 +21,51 @@ pub(crate) fn new_app() -> App {
     app
 }
 
+/// How the options ask for a scene to be composed.
+fn composition_options(scene: &SceneArgs) -> Options {
+    let mut limits = Limits::default();
+    for (name, value) in &scene.limit {
+        let known = limits.set(name, *value);
+        debug_assert!(known, "the parser lets known names through only");
+    }
+    Options {
+        sets: scene.set.clone(),
+        variants: scene.variant.clone(),
+        root: scene.root.clone(),
+        frame: scene.frame,
+        load_payloads: !scene.no_payloads,
+        limits,
+        ..Options::default()
+    }
+}
+
+/// Composes a scene and nothing more; tells the warnings.
+///
+/// # Errors
+/// The vocabulary is unsound. What is wrong with the scene is the inner result.
+pub(crate) fn compose(scene: &SceneArgs) -> Result<Result<Scene, Diagnostics>, Failure> {
+    let app = new_app();
+    let registry = app.world().resource::<AppTypeRegistry>().read();
+    let schema = Schema::new(&registry, is_scene_component).map_err(|error| Failure::failed(error.to_string()))?;
+    let composed = scene_format::load(&scene.scene, &schema, &composition_options(scene));
+    if let Ok(scene) = &composed {
+        for warning in &scene.warnings {
+            say(&titled("warning", &scene.report(warning, use_colour())));
+        }
+    }
+    Ok(composed)
+}
+
+/// Why a scene was not composed.
+pub(crate) fn refused(refusal: &Diagnostics) -> Failure {
+    Failure::bad_input(refusal.render(use_colour()))
+}
+
 /// What the options ask of a scene.
 pub(crate) fn scene_request(scene: &SceneArgs) -> RenderRequest {
     RenderRequest {
         scene: scene.scene.clone(),
-        options: scene_format::Options {
-            sets: scene.set.clone(),
-            variants: scene.variant.clone(),
-            root: scene.root.clone(),
-            frame: scene.frame,
-            load_payloads: !scene.no_payloads,
-            ..scene_format::Options::default()
-        },
+        options: composition_options(scene),
         colour: use_colour(),
         ..RenderRequest::default()
     }

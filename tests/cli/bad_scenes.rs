@@ -134,6 +134,57 @@ fn numbers() {
 }
 
 #[test]
+fn distances() {
+    let far = "reaches further than 1e15 m";
+    refuse(
+        "huge radius",
+        &with("radius: 0.5", "radius: 1e30"),
+        &["scene.ron:12:", far],
+    );
+    refuse(
+        "huge scale",
+        &with("rotate: (-90, 0, 0)", "scale: (1e25, 1e25, 1e25)"),
+        &["scene.ron:10:", far],
+    );
+    refuse(
+        "far camera",
+        &with("(0, 1, 4)", "(0, 1, 4e30)"),
+        &["scene.ron:3:", "/Camera", "too far"],
+    );
+    warn(
+        "far ball",
+        &with("(0.7, 0.5, -0.4)", "(1e12, 0, 0)"),
+        &["lost-in-rounding", "scene.ron:10:", "rounding distorts"],
+    );
+}
+
+/// Renders a scene whose image is black, which only rendering shows.
+fn find_black(name: &str, text: &str, expected: &str) {
+    let folder = Folder::with_scene(text);
+    let ran = folder.run("run scene.ron -o image.png --quiet");
+    assert_eq!(ran.code, Some(0), "{name}\n{}", ran.stderr);
+    for part in ["warning[black-image]", "scene.ron:5:", expected] {
+        assert!(ran.stderr.contains(part), "{name}: no {part:?} in\n{}", ran.stderr);
+    }
+    let strict = folder.run("run scene.ron -o image.png --strict");
+    assert_eq!(strict.code, Some(2), "{name}\n{}", strict.stderr);
+}
+
+#[test]
+fn a_black_image_never_comes_without_a_word() {
+    find_black(
+        "the camera looks away",
+        &with("translate: (0, 1, 4)", "translate: (0, 1, 4), rotate: (0, 180, 0)"),
+        "sees neither geometry nor an environment",
+    );
+    find_black(
+        "the lamp lies above everything and shines up",
+        &with("(0, 2.5, 0), rotate: (90, 0, 0)", "(0, 3.5, 0), rotate: (-90, 0, 0)"),
+        "no light comes from it",
+    );
+}
+
+#[test]
 fn camera_and_lights() {
     let camera = r#""/Camera": Def(Camera: (fov: 45), Transform: (translate: (0, 1, 4))),"#;
     refuse("no camera prim", &with(camera, ""), &["scene.ron:5:", "/Camera"]);

@@ -10,6 +10,7 @@ mod command_line;
 mod comparing;
 mod disks;
 mod interruption;
+mod layering;
 mod listing;
 mod program;
 mod rendering;

@@ -37,6 +37,45 @@ fn default_outputs_are_named_after_the_scene() {
     assert_eq!(image.attribute("pipeline.samples"), Some("4"));
 }
 
+/// White surfaces of several layers under a white sky, which reflect each other too.
+const FURNACE: &str = r#"#![enable(implicit_some)]
+Layer(prims: {
+    "/Floor": Def(Quad: (size: (9, 9)), Transform: (translate: (0, -1, 0), rotate: (-90, 0, 0)),
+        Plastic: (albedo: (1, 1, 1), roughness: 0.4)),
+    "/Lacquer": Def(Sphere: (radius: 0.5), Transform: (translate: (-0.6, 0.4, 0)), Plastic: (albedo: (1, 1, 1))),
+    "/Metal": Def(Sphere: (radius: 0.5), Transform: (translate: (0.6, 0.4, 0)),
+        Principled: (base_color: (1, 1, 1), metallic: 1, roughness: 0.6, clearcoat: 1)),
+    "/Glass": Def(Sphere: (radius: 0.5), Transform: (translate: (-0.6, -0.6, 0)),
+        Principled: (base_color: (1, 1, 1), transmission: 1, thickness: 1, roughness: 0, clearcoat: 0.5)),
+    "/Mixture": Def(Sphere: (radius: 0.5), Transform: (translate: (0.6, -0.6, 0)),
+        Principled: (base_color: (1, 1, 1), metallic: 0.3, transmission: 0.3, roughness: 0.3, clearcoat: 0.5,
+            clearcoat_roughness: 0.2)),
+    "/Sky": Def(EnvironmentLight: (radiance: (1, 1, 1))),
+    "/Camera": Def(Camera: (fov: 40), Transform: (translate: (0, 0, 3.5))),
+    "/Render": Def(Render: (camera: "/Camera", samples: 64), Film: (resolution: (24, 24)),
+        LightTransport: (caustic: Trace, indirect: PathTrace)),
+})
+"#;
+
+#[test]
+fn layered_materials_disappear_in_a_furnace() {
+    /// What a lossless surface may lose or gain, of the mean of all pixels.
+    const OF_THE_MEAN: f32 = 0.005;
+    let folder = Folder::with_scene(FURNACE);
+    folder.succeed("run scene.ron --quiet -o image.exr");
+    let image = film::read_exr(&folder.path("image.exr")).unwrap();
+    let beauty = image.rgb("").unwrap();
+    for channel in 0..3 {
+        let sum: f32 = beauty.pixels.iter().map(|pixel| pixel[channel]).sum();
+        let mean = sum / beauty.pixels.len() as f32;
+        assert!((mean - 1.0).abs() < OF_THE_MEAN, "channel {channel}: {mean}");
+    }
+    for layer in ["direct", "specular", "indirect"] {
+        let pixels = image.rgb(layer).unwrap().pixels;
+        assert!(pixels.iter().flatten().any(|value| *value > 0.1), "{layer}");
+    }
+}
+
 #[test]
 fn a_quiet_run_says_nothing() {
     let folder = Folder::with_scene(BALLS);

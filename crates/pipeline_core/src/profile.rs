@@ -107,16 +107,13 @@ impl Profile {
     }
 
     /// A table for people: system, calls, total, share, items, time per item, threads busy.
+    ///
+    /// - `short`: the name to show for the path of a system.
     #[must_use]
-    pub fn table(&self) -> String {
-        let rows = self.rows();
+    pub fn table(&self, short: impl Fn(&str) -> String) -> String {
+        let rows: Vec<_> = self.rows().into_iter().map(|(path, row)| (short(&path), row)).collect();
         let total: Duration = rows.iter().map(|(_, row)| row.wall).sum();
-        let width = rows
-            .iter()
-            .map(|(name, _)| short_name(name).len())
-            .max()
-            .unwrap_or(0)
-            .max(6);
+        let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0).max(6);
         let mut out = format!(
             "{:width$} {:>9} {:>11} {:>7} {:>13} {:>10} {:>8}\n",
             "system", "calls", "total", "share", "items", "per item", "threads"
@@ -141,7 +138,7 @@ impl Profile {
             let _ = writeln!(
                 out,
                 "{:width$} {:>9} {:>8.3} ms {:>5.1} % {:>13} {:>10} {:>8}",
-                short_name(name),
+                name,
                 row.calls,
                 seconds * 1e3,
                 share,
@@ -177,13 +174,15 @@ impl Profile {
     }
 
     /// The timeline in the Trace Event Format, which Perfetto and `chrome://tracing` open.
+    ///
+    /// - `short`: the name to show for the path of a system.
     #[must_use]
-    pub fn trace_json(&self) -> String {
+    pub fn trace_json(&self, short: impl Fn(&str) -> String) -> String {
         let recorded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut out = String::from("{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n");
         for (i, event) in recorded.events.iter().enumerate() {
             let entry = serde_json::json!({
-                "name": short_name(&event.name), "cat": "system", "ph": "X", "pid": 1, "tid": 1,
+                "name": short(&event.name), "cat": "system", "ph": "X", "pid": 1, "tid": 1,
                 "ts": event.start.as_secs_f64() * 1e6, "dur": event.wall.as_secs_f64() * 1e6,
                 "args": {"system": event.name, "items": event.items},
             });
@@ -195,21 +194,6 @@ impl Profile {
             recorded.dropped_events
         );
         out
-    }
-}
-
-/// The last two parts of a system's path: its stage file and its name.
-fn short_name(path: &str) -> String {
-    // A generic system carries its type arguments behind the name.
-    let (head, arguments) = path
-        .split_once('<')
-        .map_or((path, ""), |(head, rest)| (head, rest.trim_end_matches('>')));
-    let mut parts: Vec<&str> = head.split("::").collect();
-    let keep = parts.len().saturating_sub(2);
-    let name = parts.split_off(keep).join("::");
-    match arguments.rsplit("::").next() {
-        Some(argument) if !argument.is_empty() => format!("{name}<{argument}>"),
-        _ => name,
     }
 }
 
@@ -237,8 +221,9 @@ mod tests {
         let rows = profile.rows();
         assert_eq!(rows[0].0, "stage::file::dear<x::Y>");
         assert_eq!((rows[0].1.calls, rows[0].1.items), (3, 30));
-        assert!(profile.table().contains("file::dear<Y>"));
-        let trace: serde_json::Value = serde_json::from_str(&profile.trace_json()).expect("valid JSON");
+        let last = |path: &str| path.rsplit_once("file::").map_or(path, |(_, name)| name).to_owned();
+        assert!(profile.table(last).contains("\ndear<x::Y>  "));
+        let trace: serde_json::Value = serde_json::from_str(&profile.trace_json(last)).expect("valid JSON");
         assert_eq!(trace["traceEvents"].as_array().map(Vec::len), Some(6));
         assert!(serde_json::from_str::<serde_json::Value>(&profile.json()).is_ok());
     }

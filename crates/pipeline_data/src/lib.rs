@@ -14,7 +14,7 @@ mod settings;
 mod stream;
 pub mod vocabulary;
 
-pub use mesh_store::{ImportedMesh, MeshStore};
+pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
 pub use photon::{CausticPhoton, Photon};
 pub use request::RenderRequest;
 pub use scene::{

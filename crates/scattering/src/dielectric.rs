@@ -36,6 +36,21 @@ impl DielectricBsdf {
     /// - `surface`: smooth or GGX. α |ior − 1| below [`SMOOTH_SPREAD`] becomes smooth.
     #[must_use]
     pub fn new(ior: f32, tint: Rgb, surface: Microsurface) -> Self {
+        let averages = if surface.has_energy_compensation() {
+            Self::fresnel_averages(ior)
+        } else {
+            [0.0; 2]
+        };
+        Self::with_fresnel_averages(ior, tint, surface, averages)
+    }
+
+    /// Diffuse Fresnel reflectance of the outside and of the inside.
+    pub(crate) fn fresnel_averages(ior: f32) -> [f32; 2] {
+        [average_fresnel_dielectric(ior), average_fresnel_dielectric(1.0 / ior)]
+    }
+
+    /// As [`Self::new`], with the two averages at hand: cheap enough to be built when it is evaluated.
+    pub(crate) fn with_fresnel_averages(ior: f32, tint: Rgb, surface: Microsurface, averages: [f32; 2]) -> Self {
         let smooth = surface.alpha() * (ior - 1.0).abs() < SMOOTH_SPREAD;
         let surface = if smooth { Microsurface::SMOOTH } else { surface };
         let mut interface = RoughInterface::default();
@@ -43,8 +58,7 @@ impl DielectricBsdf {
             let alpha = surface.alpha();
             let outside = refraction_loss(alpha, ior).average();
             let inside = refraction_loss(alpha, 1.0 / ior).average();
-            let (f_out, f_in) = (average_fresnel_dielectric(ior), average_fresnel_dielectric(1.0 / ior));
-            interface = RoughInterface::new([outside, inside], [f_out, f_in]);
+            interface = RoughInterface::new([outside, inside], averages);
         }
         let compensated = surface.has_energy_compensation() && interface.is_compensated();
         Self {

@@ -15,13 +15,7 @@ use std::sync::LazyLock;
 /// Light that a perfectly reflecting GGX surface loses in single scattering.
 #[inline]
 pub(crate) fn reflection_loss(alpha: f32) -> SideLoss<2> {
-    let table = &*REFLECTION;
-    let (i, f) = table.locate_alpha(alpha);
-    SideLoss {
-        table,
-        alpha,
-        rows: [(table.row(0, i), 1.0 - f), (table.row(0, i + 1), f)],
-    }
+    REFLECTION.of_alpha(alpha)
 }
 
 /// Light that a GGX interface between two dielectrics loses in single scattering, reflected and refracted together.
@@ -29,19 +23,7 @@ pub(crate) fn reflection_loss(alpha: f32) -> SideLoss<2> {
 /// - `eta`: `n_transmitted / n_incident` as seen from the side in question; clamped to [¼, 4].
 #[inline]
 pub(crate) fn refraction_loss(alpha: f32, eta: f32) -> SideLoss<4> {
-    let table = &*REFRACTION;
-    let (i, f) = table.locate_alpha(alpha);
-    let (slab, g) = locate_eta(eta);
-    SideLoss {
-        table,
-        alpha,
-        rows: [
-            (table.row(slab, i), (1.0 - g) * (1.0 - f)),
-            (table.row(slab, i + 1), (1.0 - g) * f),
-            (table.row(slab + 1, i), g * (1.0 - f)),
-            (table.row(slab + 1, i + 1), g * f),
-        ],
-    }
+    REFRACTION.of_slab_and_alpha(locate_eta(eta), alpha)
 }
 
 /// Slabs of the refraction table: equal steps of ±√|s|, s = (η − 1)/(η + 1), which are dense about η = 1.
@@ -77,28 +59,39 @@ fn build_refraction() -> LossTable {
 }
 
 /// Midpoints over the two numbers that choose a visible normal; half the azimuths suffice by symmetry.
-struct Quadrature {
+pub(crate) struct Quadrature {
     azimuths: Vec<Vec2>,
-    heights: Vec<f32>,
+    /// With a weight each, one on average.
+    heights: Vec<(f32, f32)>,
 }
 
 impl Quadrature {
-    fn new(azimuths: usize, heights: usize) -> Self {
+    pub(crate) fn new(azimuths: usize, heights: usize) -> Self {
         let mid = |i: usize, n: usize| (i as f32 + 0.5) / n as f32;
         let on_circle = |phi: f32| Vec2::new(math::cos(phi), math::sin(phi));
         Self {
             azimuths: (0..azimuths).map(|i| on_circle(PI * mid(i, azimuths))).collect(),
-            heights: (0..heights).map(|i| mid(i, heights)).collect(),
+            heights: (0..heights).map(|i| (mid(i, heights), 1.0)).collect(),
         }
     }
 
+    /// As [`Self::new`], with heights denser among the steep normals: rare, but they lose the most.
+    pub(crate) fn graded(azimuths: usize, heights: usize) -> Self {
+        let mut graded = Self::new(azimuths, heights);
+        for (height, weight) in &mut graded.heights {
+            let rest = 1.0 - *height;
+            (*height, *weight) = (1.0 - rest * rest, 2.0 * rest);
+        }
+        graded
+    }
+
     /// Mean of `loss(ω_o, h)` over the normals visible from an angle.
-    fn mean(&self, ggx: Ggx, mu: f32, loss: impl Fn(Vec3, Vec3) -> f32) -> f32 {
+    pub(crate) fn mean(&self, ggx: Ggx, mu: f32, loss: impl Fn(Vec3, Vec3) -> f32) -> f32 {
         let wo = Vec3::new(((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt(), 0.0, mu);
         let mut sum = 0.0_f64;
         for azimuth in &self.azimuths {
-            for height in &self.heights {
-                sum += f64::from(loss(wo, ggx.visible_normal(wo, *azimuth, *height)));
+            for (height, weight) in &self.heights {
+                sum += f64::from(weight * loss(wo, ggx.visible_normal(wo, *azimuth, *height)));
             }
         }
         (sum / (self.azimuths.len() * self.heights.len()) as f64) as f32
@@ -124,7 +117,7 @@ impl Quadrature {
 }
 
 /// `1 − G₂(ω_o, ω_i)/G₁(ω_o)` of the reflection at `h`; all of it where that lies below the surface.
-fn loss_of_reflection(ggx: Ggx, wo: Vec3, h: Vec3) -> f32 {
+pub(crate) fn loss_of_reflection(ggx: Ggx, wo: Vec3, h: Vec3) -> f32 {
     let cos_i = 2.0 * wo.dot(h) * h.z - wo.z;
     if cos_i <= 0.0 {
         return 1.0;

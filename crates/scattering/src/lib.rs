@@ -12,10 +12,12 @@
 //!   is the density that really was drawn from. Chi-square tests hold every sampler to it.
 //! - **Both directions of transport agree.** Multiple scattering between microfacets is added in reciprocal form, and
 //!   [`Transport`] says who pays the η² of refraction, so photons and eye paths converge to the same image.
-//! - **No energy is lost.** A white metal or clear glass returns a uniform field unchanged, rough or smooth.
+//! - **No energy is lost.** White metal and plastic, clear glass and their mixtures under a coat return a
+//!   uniform field unchanged, rough or smooth.
 //!
-//! It deliberately has no spectra (metals are integrated to RGB, see [`Metal`]), no polarisation, no textures, and no
-//! correction for shading normals, which needs the geometric normal and is the caller's.
+//! It deliberately has no spectra (metals are integrated to RGB, see [`Metal`]; dispersion draws a wavelength for RGB
+//! light, see [`SampledWavelength`]), no polarisation, no textures, and no correction for shading normals, which needs the
+//! geometric normal and is the caller's.
 //!
 //! ```
 //! use glam::{Vec2, Vec3};
@@ -31,25 +33,38 @@
 //! ```
 
 mod bsdf;
+mod coated_metal;
 mod conductor;
 mod dielectric;
 mod diffuse;
+mod dispersion;
 mod energy;
 mod fresnel;
 mod ggx;
+mod interior;
+mod lobe;
 mod loss_table;
 mod metals;
 mod microsurface;
+mod plastic;
+mod principled;
+mod reflectance;
 mod rough_dielectric;
+mod sheen;
 #[cfg(test)]
 mod tests;
 
-pub use bsdf::{Bsdf, BsdfSample, LobeClass, LobeValues, Transport};
+pub use bsdf::Bsdf;
 pub use conductor::{ConductorBsdf, ConductorFresnel};
 pub use dielectric::{DielectricBsdf, SMOOTH_SPREAD};
 pub use diffuse::DiffuseBsdf;
+pub use dispersion::{Dispersion, SampledWavelength};
 pub use fresnel::{
     average_fresnel_conductor, average_fresnel_dielectric, fresnel_conductor, fresnel_dielectric, schlick,
 };
+pub use interior::{Crossing, Interior, InteriorList};
+pub use lobe::{BsdfSample, LobeClass, LobeValues, Transport};
 pub use metals::Metal;
 pub use microsurface::{Microsurface, SMOOTH_ALPHA, lobe_class};
+pub use plastic::PlasticBsdf;
+pub use principled::{PrincipledBsdf, PrincipledParameters};

@@ -55,24 +55,53 @@ impl LossTable {
     }
 
     /// Position of a row: lower index and fraction.
-    pub(crate) fn locate_alpha(&self, alpha: f32) -> (usize, f32) {
+    fn locate_alpha(&self, alpha: f32) -> (usize, f32) {
         let low = eighth_root(LOWEST_ALPHA);
         cell((eighth_root(alpha) - low) / (1.0 - low), self.alpha_steps)
     }
 
+    /// The side of a surface of width `alpha`, in a table of one slab.
+    #[inline]
+    pub(crate) fn of_alpha(&'static self, alpha: f32) -> SideLoss<2> {
+        let (i, f) = self.locate_alpha(alpha);
+        SideLoss {
+            table: self,
+            alpha,
+            rows: [(self.row(0, i), 1.0 - f), (self.row(0, i + 1), f)],
+        }
+    }
+
+    /// The side of a surface of width `alpha`, between two slabs.
+    ///
+    /// - `slab`: lower index and fraction.
+    #[inline]
+    pub(crate) fn of_slab_and_alpha(&'static self, (slab, g): (usize, f32), alpha: f32) -> SideLoss<4> {
+        let (i, f) = self.locate_alpha(alpha);
+        SideLoss {
+            table: self,
+            alpha,
+            rows: [
+                (self.row(slab, i), (1.0 - g) * (1.0 - f)),
+                (self.row(slab, i + 1), (1.0 - g) * f),
+                (self.row(slab + 1, i), g * (1.0 - f)),
+                (self.row(slab + 1, i + 1), g * f),
+            ],
+        }
+    }
+
     /// Index of the first node of a row.
-    pub(crate) fn row(&self, slab: usize, alpha_index: usize) -> usize {
+    fn row(&self, slab: usize, alpha_index: usize) -> usize {
         (slab * (self.alpha_steps + 1) + alpha_index) * (self.angle_steps + 1)
     }
 }
 
 #[inline]
-fn eighth_root(x: f32) -> f32 {
+pub(crate) fn eighth_root(x: f32) -> f32 {
     x.sqrt().sqrt().sqrt()
 }
 
 /// α at a fraction of the rows.
-fn alpha_of_row(x: f32) -> f32 {
+pub(crate) fn alpha_of_row(x: f32) -> f32 {
     let low = eighth_root(LOWEST_ALPHA);
     let root = low + (1.0 - low) * x;
     let squared = root * root;
@@ -116,11 +145,12 @@ pub(crate) fn cell(x: f32, steps: usize) -> (usize, f32) {
 }
 
 /// What one side of one surface loses, by the angle: a blend of `N` rows of a table.
+#[derive(Clone, Copy)]
 pub(crate) struct SideLoss<const N: usize> {
-    pub(crate) table: &'static LossTable,
-    pub(crate) alpha: f32,
+    table: &'static LossTable,
+    alpha: f32,
     /// First node of each row, and its share.
-    pub(crate) rows: [(usize, f32); N],
+    rows: [(usize, f32); N],
 }
 
 impl<const N: usize> SideLoss<N> {

@@ -9,46 +9,10 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use bevy_reflect::{Reflect, TypeRegistry, std_traits::ReflectDefault};
-use glam::DVec3;
-use scene_format::{Options, Schema, Targets, errors_json, flatten_json, load};
+use scene_format::{Options, Schema, errors_json, flatten_json, load};
 
-macro_rules! components {
-    ($($name:ident { $($field:ident: $kind:ty),* $(,)? })*) => {
-        $(
-            #[doc = concat!("`", stringify!($name), "` of the comparison.")]
-            #[derive(Reflect, Clone, Debug, Default)]
-            #[reflect(Default)]
-            struct $name {
-                $($field: $kind,)*
-            }
-        )*
-
-        /// Marks the registered types that are components.
-        fn is_component(type_id: std::any::TypeId) -> bool {
-            [$(std::any::TypeId::of::<$name>()),*].contains(&type_id)
-        }
-
-        fn registry() -> TypeRegistry {
-            let mut registry = TypeRegistry::new();
-            $(registry.register::<$name>();)*
-            registry
-        }
-    };
-}
-
-components! {
-    Transform { translate: DVec3, rotate: DVec3, scale: DVec3 }
-    Camera { fov: f64, fstop: f64, focus: f64 }
-    Light { intensity: f64, color: DVec3, samples: i64 }
-    Material { roughness: f64, base_color: DVec3, model: String }
-    Shape { radius: f64, segments: i64, smooth: bool, kind: String }
-    Medium { density: f64, phase: String }
-    RenderSettings { photons: i64, integrator: String, gamma: f64 }
-    MotionBlur { enabled: bool, shutter: f64 }
-    MaterialBinding { target: Targets }
-    LightLinks { include: Targets, exclude: Targets }
-}
+#[path = "../tests/corpus/vocabulary.rs"]
+mod vocabulary;
 
 const USAGE: &str = "usage: layering_case flatten --json [--variant V] [--set S] [--no-payloads] SCENE";
 
@@ -72,8 +36,8 @@ fn main() -> ExitCode {
         eprintln!("{USAGE}");
         return ExitCode::from(2);
     };
-    let registry = registry();
-    let schema = match Schema::new(&registry, |found| is_component(found.type_id())) {
+    let registry = vocabulary::registry();
+    let schema = match Schema::new(&registry, vocabulary::is_component) {
         Ok(schema) => schema,
         Err(error) => {
             eprintln!("{error}");

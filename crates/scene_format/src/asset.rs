@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::options::Limits;
+use crate::scene::Scene;
 use crate::source::{Origin, Place, Sources};
 
 /// The folders that decide where files may lie; both canonical if they exist.
@@ -33,10 +34,18 @@ impl Folders {
     }
 }
 
+impl Scene {
+    /// The folder that no file of the scene may lie outside of, canonical.
+    #[must_use]
+    pub fn root(&self) -> &Path {
+        &self.folders.root
+    }
+}
+
 /// Finds the file that `text`, written at `place`, names.
 pub(crate) fn resolve(text: &str, place: Place, sources: &Sources, folders: &Folders) -> Result<PathBuf, Diagnostic> {
     let folder = match sources.get(place.source).map(|source| &source.origin) {
-        Some(Origin::File { folder }) => folder,
+        Some(Origin::File { folder } | Origin::Model { folder }) => folder,
         _ => &folders.scene,
     };
     resolve_below(text, folder, &folders.root).map_err(|error| error.at(place))
@@ -47,7 +56,7 @@ fn escape(message: String) -> Diagnostic {
 }
 
 /// Joins and canonicalises; the result is a regular file below `root`.
-fn resolve_below(text: &str, folder: &Path, root: &Path) -> Result<PathBuf, Diagnostic> {
+pub(crate) fn resolve_below(text: &str, folder: &Path, root: &Path) -> Result<PathBuf, Diagnostic> {
     if let Some(problem) = spelling_problem(text) {
         return Err(escape(problem));
     }
@@ -111,7 +120,7 @@ fn missing_file(text: &str, joined: &Path) -> Diagnostic {
 }
 
 /// Why a text is not a relative path that means the same on every system.
-fn spelling_problem(text: &str) -> Option<String> {
+pub(crate) fn spelling_problem(text: &str) -> Option<String> {
     if text.is_empty() {
         return Some("the name of a file is empty".to_owned());
     }
@@ -133,32 +142,44 @@ fn spelling_problem(text: &str) -> Option<String> {
     None
 }
 
+/// Reads a file of limited size.
+///
+/// - `name`: what people know it by.
+///
+/// # Errors
+///
+/// Without a place.
+pub(crate) fn read_bytes(path: &Path, name: &str, limit: u64) -> Result<Vec<u8>, Diagnostic> {
+    let unreadable = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::NotFound => missing_file(name, path),
+        _ => Diagnostic::error("unreadable-file", format!("{name} cannot be read: {error}")),
+    };
+    let status = path.metadata().map_err(unreadable)?;
+    if !status.is_file() {
+        let message = format!("{name} is not a regular file");
+        return Err(Diagnostic::error("not-a-file", message));
+    }
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)
+        .map_err(unreadable)?
+        .take(limit.saturating_add(1))
+        .read_to_end(&mut bytes)
+        .map_err(unreadable)?;
+    if bytes.len() as u64 > limit {
+        let message = format!("{name} has more than {limit} bytes");
+        return Err(Diagnostic::error("too-large", message));
+    }
+    Ok(bytes)
+}
+
 /// Reads a text file of limited size.
 ///
 /// # Errors
 ///
 /// Without a place. For bytes that are not UTF-8 with the text up to there, whose end is the place.
-pub(crate) fn read_text(path: &Path, limits: &Limits) -> Result<String, (Diagnostic, String)> {
-    let plain = |code, message: String| (Diagnostic::error(code, message), String::new());
-    let shown = path.display();
-    let unreadable = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => (missing_file(&path.to_string_lossy(), path), String::new()),
-        _ => plain("unreadable-file", format!("{shown} cannot be read: {error}")),
-    };
-    let status = path.metadata().map_err(unreadable)?;
-    if !status.is_file() {
-        return Err(plain("not-a-file", format!("{shown} is not a regular file")));
-    }
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)
-        .map_err(unreadable)?
-        .take(limits.file_bytes as u64 + 1)
-        .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
-    if bytes.len() > limits.file_bytes {
-        let message = format!("{shown} has more than {} bytes", limits.file_bytes);
-        return Err(plain("too-large", message));
-    }
+pub(crate) fn read_text(path: &Path, name: &str, limits: &Limits) -> Result<String, (Diagnostic, String)> {
+    let limit = limits.file_bytes.min(u32::MAX as usize) as u64;
+    let mut bytes = read_bytes(path, name, limit).map_err(|error| (error, String::new()))?;
     if bytes.starts_with(b"\xef\xbb\xbf") {
         bytes.drain(..3);
     }

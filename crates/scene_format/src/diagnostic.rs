@@ -173,7 +173,10 @@ impl Report {
     /// Adds a message unless the same was said of the same place before: one mistake in a file may
     /// be met on the way to many prims.
     pub(crate) fn push_once(&mut self, diagnostic: Diagnostic) {
-        if self.said.insert((diagnostic.code, diagnostic.place, diagnostic.message.clone())) {
+        if self
+            .said
+            .insert((diagnostic.code, diagnostic.place, diagnostic.message.clone()))
+        {
             self.push(diagnostic);
         }
     }

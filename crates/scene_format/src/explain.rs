@@ -6,7 +6,6 @@ use crate::compose::ArcKind;
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::flatten::ron_value;
 use crate::scene::{ComponentValue, Contributor, FieldState, FieldValue, Opinion, Prim, Scene};
-use crate::source::Place;
 
 /// Longest text of a value that is shown.
 const WIDTH: usize = 40;
@@ -35,7 +34,9 @@ pub fn explain(scene: &Scene, question: &str) -> Result<String, Diagnostic> {
         field.name,
         state_text(field)
     );
-    let rows: Vec<[String; 4]> = (0..field.opinions.len()).map(|number| row(scene, prim, field, number)).collect();
+    let rows: Vec<[String; 4]> = (0..field.opinions.len())
+        .map(|number| row(scene, prim, field, number))
+        .collect();
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths = [width(0), width(1), width(2)];
     for (number, [place, value, arc, verdict]) in rows.iter().enumerate() {
@@ -65,7 +66,13 @@ fn find<'s>(scene: &'s Scene, question: &str) -> Result<(&'s Prim, &'s Component
         return Err(error.suggest(nearest(path, names)));
     };
     let all = || prim.components.iter().chain(&prim.removed);
-    let list = |names: Vec<&str>| if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    let list = |names: Vec<&str>| {
+        if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        }
+    };
     let fits = |found: &&ComponentValue| component.is_none_or(|name| name == found.name);
     if let Some(name) = component
         && !all().any(|found| found.name == name)
@@ -83,7 +90,11 @@ fn find<'s>(scene: &'s Scene, question: &str) -> Result<(&'s Prim, &'s Component
     match found[..] {
         [(component, field)] => Ok((prim, component, field)),
         [] => {
-            let names = || all().filter(fits).flat_map(|found| found.fields.iter().map(|field| field.name));
+            let names = || {
+                all()
+                    .filter(fits)
+                    .flat_map(|found| found.fields.iter().map(|field| field.name))
+            };
             let message = format!("no layer has an opinion about `{question}`, so the default holds");
             Err(Diagnostic::error("no-opinion", message)
                 .suggest(nearest(field, names()))
@@ -129,20 +140,11 @@ fn row(scene: &Scene, prim: &Prim, field: &FieldValue, number: usize) -> [String
         format!("weaker: {}", reason(scene, prim, &field.opinions[0], opinion))
     };
     [
-        short_place(scene, opinion.place),
+        scene.sources.describe_line(opinion.place).to_string(),
         shorten(scene.sources.text(opinion.place)),
         describe_arcs(scene, prim, opinion),
         verdict,
     ]
-}
-
-/// `ring.ron:20`, or the flag of an argument.
-fn short_place(scene: &Scene, place: Place) -> String {
-    if scene.sources.is_argument(place.source) {
-        return scene.sources.name(place.source).to_owned();
-    }
-    let (line, _) = scene.sources.line_column(place);
-    format!("{}:{line}", scene.sources.name(place.source))
 }
 
 /// `inherits /_Metal (from layout.ron:16)`, with the arcs that led to its start.
@@ -155,7 +157,7 @@ fn describe_arcs(scene: &Scene, prim: &Prim, opinion: &Opinion) -> String {
         }
         let place = found
             .arc_place
-            .map_or(String::new(), |place| format!(" (from {})", short_place(scene, place)));
+            .map_or(String::new(), |place| format!(" (from {})", scene.sources.describe_line(place)));
         parts.push(format!("{} {}{place}", found.arc.word(), found.path));
     }
     if parts.is_empty() {
@@ -233,18 +235,24 @@ fn between(winner: &Contributor, loser: &Contributor) -> String {
 fn remarks(prim: &Prim, component: &ComponentValue, field: &FieldValue) -> Vec<String> {
     let mut list = Vec::new();
     if prim.removed.iter().any(|removed| removed.name == component.name) {
-        list.push(format!("`without` removes {} from {}, so this has no effect", component.name, prim.path));
+        list.push(format!(
+            "`without` removes {} from {}, so this has no effect",
+            component.name, prim.path
+        ));
     }
     let in_variant = |opinion: &Opinion| {
         let way = ways(prim, opinion.contributor);
-        way.iter().any(|&number| prim.contributors[number as usize].arc == ArcKind::Variants)
+        way.iter()
+            .any(|&number| prim.contributors[number as usize].arc == ArcKind::Variants)
     };
     if !field.is_relationship()
         && !in_variant(&field.opinions[0])
         && let Some(hidden) = field.opinions.iter().find(|opinion| in_variant(opinion))
     {
         let path = &prim.contributors[hidden.contributor as usize].path;
-        list.push(format!("the stronger opinion makes the choice of a variant pointless here: {path} has one too"));
+        list.push(format!(
+            "the stronger opinion makes the choice of a variant pointless here: {path} has one too"
+        ));
     }
     list
 }

@@ -30,11 +30,19 @@
 //! *A wrong scene is refused.* A misspelt name, a file that is not there, a number out of range: up
 //! to twenty messages at once, each with its place and, where there is one, the remedy.
 //!
+//! *A model is a layer.* [`translate_model`] writes glTF and OBJ files in the same syntax, and [`Model`] reads the
+//! triangles that the prims of such a layer name.
+//!
+//! *Composition is USD's.* Sublayers, references, payloads, inherits, variants and specializes are
+//! combined in the order in which OpenUSD combines them, ties included; `compose/mod.rs` says how.
+//! [`explain`] tells for a value who said it and why the others lose, [`flatten_ron`] and
+//! [`flatten_json`] write what came out.
+//!
 //! # What it does not do
 //!
-//! Arcs between prims and files (sublayers, references, payloads, inherits, specializes, variants)
-//! are read and checked but not composed yet: a scene that uses one is refused. Formatting with
-//! comments kept, and more than one mistake of syntax in a run, are left out.
+//! Of USD it leaves out relocates, value clips, instancing in the scene graph, variant fallbacks,
+//! and list edits by `add` and `reorder`. A faulty arc is an error, where USD warns and goes on.
+//! Formatting with comments kept, and more than one mistake of syntax in a file, are left out.
 //!
 //! # Example
 //!
@@ -83,6 +91,7 @@ mod layer;
 mod lex;
 mod load;
 mod mesh;
+mod model;
 mod options;
 mod path;
 mod read;
@@ -104,11 +113,15 @@ pub use flatten::{errors_json, flatten_json, flatten_ron};
 pub use hash::mix_hash;
 pub use layer::{Specifier, TimeSettings};
 pub use load::{load, load_str};
-pub use mesh::{MeshError, MeshLimits, MeshWarning, ObjMesh, Oddity, load_obj, parse_obj};
+pub use mesh::{MeshData, MeshError, MeshLimits, MeshPlace, MeshWarning, Oddity, load_obj, parse_obj};
+pub use model::{
+    MeshPart, Model, ModelError, ModelFile, ModelLimits, ModelWarning, TranslatedModel, is_model, translate_model,
+};
 pub use options::{Limits, Options};
 pub use relation::{AssetPath, Target, Targets};
 pub use scene::{
-    AssetUse, ComponentValue, Contributor, FieldState, FieldValue, Opinion, Prim, Scene, ValueAt, VariantChoice,
+    AssetUse, ComponentValue, Contributor, FieldState, FieldValue, LoadCost, Opinion, Prim, Scene, ValueAt,
+    VariantChoice,
 };
 pub use schema::{ComponentInfo, FieldInfo, Schema, SchemaError};
 pub use schema_text::schema_text;

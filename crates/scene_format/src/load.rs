@@ -1,16 +1,17 @@
 //! From a file to a scene: reading, composing, checking, in this order.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use crate::asset::{Folders, read_text};
+use crate::asset::Folders;
 use crate::compose::{Composed, LayerId, Library, compose};
-use crate::diagnostic::{Diagnostic, Diagnostics, Report};
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::hash::hash_scene;
 use crate::options::Options;
-use crate::scene::Scene;
+use crate::scene::{LoadCost, Scene};
 use crate::schema::Schema;
 use crate::session::read_session;
-use crate::source::{Place, Sources};
+use crate::source::{SourceId, Sources};
 use crate::validate::{check_fields, check_targets, resolve_assets};
 
 /// Loads the scene in a file.
@@ -19,25 +20,14 @@ use crate::validate::{check_fields, check_targets, resolve_assets};
 ///
 /// Everything that is wrong with it, up to 20 messages; after a mistake of syntax that one.
 pub fn load(path: &Path, schema: &Schema<'_>, options: &Options) -> Result<Scene, Diagnostics> {
-    let name = path.display().to_string();
-    let folder = folder_of(path);
-    match read_text(path, &options.limits) {
-        Ok(text) => load_text(&name, folder, text, path.canonicalize().ok(), schema, options),
-        Err((error, text)) => {
-            let mut sources = Sources::default();
-            let end = text.len() as u32;
-            let source = sources.add_file(&name, folder, text, None);
-            let mut report = Report::default();
-            report.push(if error.code == "not-utf-8" {
-                error.at(Place {
-                    source,
-                    start: end,
-                    end,
-                })
-            } else {
-                error
-            });
-            Err(report.into_diagnostics(sources))
+    let folders = Folders::of(folder_of(path), options.root.as_deref());
+    let mut library = Library::new(schema, &options.limits, folders);
+    let canonical = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    match library.add_source(&canonical, &path.display().to_string(), None) {
+        Ok(source) => load_source(library, source, Some(canonical), options),
+        Err(error) => {
+            library.report.push(error);
+            Err(library.report.into_diagnostics(library.sources))
         }
     }
 }
@@ -49,7 +39,16 @@ pub fn load(path: &Path, schema: &Schema<'_>, options: &Options) -> Result<Scene
 /// As [`load`].
 pub fn load_str(name: &str, text: &str, schema: &Schema<'_>, options: &Options) -> Result<Scene, Diagnostics> {
     let folder = folder_of(Path::new(name));
-    load_text(name, folder, text.to_owned(), None, schema, options)
+    let folders = Folders::of(folder, options.root.as_deref());
+    let mut library = Library::new(schema, &options.limits, folders);
+    if text.len() > options.limits.file_bytes.min(u32::MAX as usize) {
+        let message = format!("{name} has more than {} bytes", options.limits.file_bytes);
+        library.report.push(Diagnostic::error("too-large", message));
+        return Err(library.report.into_diagnostics(library.sources));
+    }
+    let folder = library.folders.scene.clone();
+    let source = library.sources.add_file(name, &folder, text.to_owned(), None);
+    load_source(library, source, None, options)
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -60,28 +59,26 @@ fn folder_of(path: &Path) -> &Path {
 }
 
 /// - `canonical`: the file that the text is from, so that other files may name it.
-fn load_text(
-    name: &str,
-    folder: &Path,
-    text: String,
+fn load_source(
+    mut library: Library<'_, '_>,
+    source: SourceId,
     canonical: Option<PathBuf>,
-    schema: &Schema<'_>,
     options: &Options,
 ) -> Result<Scene, Diagnostics> {
-    let folders = Folders::of(folder, options.root.as_deref());
-    let mut library = Library::new(schema, &options.limits, folders);
-    if text.len() > options.limits.file_bytes.min(u32::MAX as usize) {
-        let message = format!("{name} has more than {} bytes", options.limits.file_bytes);
-        library.report.push(Diagnostic::error("too-large", message));
-        return Err(library.report.into_diagnostics(library.sources));
-    }
-    let folder = library.folders.scene.clone();
-    let source = library.sources.add_file(name, &folder, text, None);
+    let begun = Instant::now();
+    let read_before = library.reading;
     let scene = library
         .add_text(source, canonical)
         .and_then(|layer| compose_scene(&mut library, layer, options));
     match scene {
         Some(mut scene) if !library.report.is_refused() => {
+            let (layers, opinions) = library.counts();
+            scene.cost = LoadCost {
+                layers,
+                opinions,
+                reading: library.reading,
+                composing: begun.elapsed().saturating_sub(library.reading - read_before),
+            };
             scene.warnings = library.report.warnings;
             scene.sources = library.sources;
             Ok(scene)
@@ -129,6 +126,7 @@ fn compose_scene(library: &mut Library<'_, '_>, layer: LayerId, options: &Option
         frame,
         warnings: Vec::new(),
         assets,
+        cost: LoadCost::default(),
         sources: Sources::default(),
         folders: library.folders.clone(),
     })

@@ -47,6 +47,43 @@ impl Default for Limits {
     }
 }
 
+impl Limits {
+    /// Names of the limits, for [`Self::set`].
+    pub const NAMES: [&str; 11] = [
+        "file_bytes",
+        "layers",
+        "prims",
+        "prim_depth",
+        "opinions",
+        "list_items",
+        "samples",
+        "variants",
+        "name_bytes",
+        "arc_depth",
+        "index_nodes",
+    ];
+
+    /// Sets the limit of a name; false if there is none of that name.
+    pub fn set(&mut self, name: &str, value: usize) -> bool {
+        let limit = match name {
+            "file_bytes" => &mut self.file_bytes,
+            "layers" => &mut self.layers,
+            "prims" => &mut self.prims,
+            "prim_depth" => &mut self.prim_depth,
+            "opinions" => &mut self.opinions,
+            "list_items" => &mut self.list_items,
+            "samples" => &mut self.samples,
+            "variants" => &mut self.variants,
+            "name_bytes" => &mut self.name_bytes,
+            "arc_depth" => &mut self.arc_depth,
+            "index_nodes" => &mut self.index_nodes,
+            _ => return false,
+        };
+        *limit = value;
+        true
+    }
+}
+
 /// Prims are never nested deeper: that many fit on the stack of any thread.
 pub(crate) const DEEPEST: usize = 64;
 

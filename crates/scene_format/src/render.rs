@@ -7,6 +7,8 @@ use crate::source::{Origin, Place, Source, Sources};
 
 /// Lines are cut to about this many characters around the caret.
 const WIDTH: usize = 110;
+/// Of more places that take part the middle ones are left out.
+const MOST_RELATED: usize = 8;
 /// A tab is shown as this many blanks.
 const TAB: usize = 4;
 
@@ -51,7 +53,23 @@ pub(crate) fn render(diagnostic: &Diagnostic, sources: &Sources, colour: bool) -
         }
         None => {}
     }
-    for (place, what) in &diagnostic.related {
+    if let Some(chain) = diagnostic.place.and_then(|place| reached_by(place, sources)) {
+        let _ = writeln!(text, "{:margin$} {} {chain}", "", paint.text(BLUE, "="));
+    }
+    let count = diagnostic.related.len();
+    for (number, (place, what)) in diagnostic.related.iter().enumerate() {
+        let left_out = count.saturating_sub(MOST_RELATED);
+        if left_out > 0 && number == MOST_RELATED / 2 {
+            let _ = writeln!(
+                text,
+                "{:margin$} {} .. and {left_out} more ..",
+                "",
+                paint.text(BLUE, "=")
+            );
+        }
+        if (MOST_RELATED / 2..MOST_RELATED / 2 + left_out).contains(&number) {
+            continue;
+        }
         let _ = writeln!(
             text,
             "{:margin$} {} {}: {}",
@@ -65,6 +83,21 @@ pub(crate) fn render(diagnostic: &Diagnostic, sources: &Sources, colour: bool) -
         let _ = writeln!(text, "{:margin$} {} {}", "", paint.text(BLUE, "="), visible(note));
     }
     text
+}
+
+/// `reached by: ring.ron:6 sublayers -> lighting.ron`; none for the file that was asked for.
+fn reached_by(place: Place, sources: &Sources) -> Option<String> {
+    let mut steps = Vec::new();
+    let mut source = sources.get(place.source)?;
+    while let Some(reached) = source.reached {
+        let naming = sources.get(reached.place.source)?;
+        let place = sources.describe_line(reached.place).to_string();
+        steps.push(format!("{} {} -> ", visible(&place), reached.word));
+        source = naming;
+    }
+    steps.reverse();
+    let name = &sources.get(place.source)?.name;
+    (!steps.is_empty()).then(|| format!("reached by: {}{}", steps.concat(), visible(name)))
 }
 
 fn beside_caret(diagnostic: &Diagnostic) -> String {

@@ -3,6 +3,7 @@
 use std::any::TypeId;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_reflect::{FromReflect, PartialReflect, Reflect, ReflectFromReflect, ReflectMut};
@@ -33,10 +34,25 @@ pub struct Scene {
     pub hash: [u8; 32],
     /// The files that fields of rendered prims name, in the order of the prims.
     pub assets: Vec<AssetUse>,
+    /// What it took to compose.
+    pub cost: LoadCost,
     /// The texts that places refer to.
     pub sources: Sources,
     pub(crate) index: BTreeMap<String, usize>,
     pub(crate) folders: Folders,
+}
+
+/// What it took to compose a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LoadCost {
+    /// Layers, each read once; the command line is one.
+    pub layers: usize,
+    /// Fields that the layers write.
+    pub opinions: usize,
+    /// Time to read and parse the files.
+    pub reading: Duration,
+    /// Time for all else: composition and checks.
+    pub composing: Duration,
 }
 
 /// A file that a field names.

@@ -162,6 +162,7 @@ impl Session {
             // A later argument wins.
             arcs.select.retain(|other| other.set != selection.set);
             arcs.select.push(selection);
+            library.session_selections.insert(path, arcs.select.clone());
         }
         for argument in &self.sets {
             if argument.component.is_none() && found.is_none() {

@@ -26,6 +26,8 @@ pub struct Place {
 pub(crate) enum Origin {
     /// A file; names in it are relative to this folder.
     File { folder: PathBuf },
+    /// What a model file was translated to; names in it are relative to the model's folder.
+    Model { folder: PathBuf },
     /// An argument of the command line.
     Argument,
 }
@@ -125,6 +127,14 @@ impl Sources {
         self.add(Source::new(name.to_owned(), text, origin, reached))
     }
 
+    /// Adds what a model file was translated to.
+    pub(crate) fn add_model(&mut self, name: &str, folder: &Path, text: String, reached: Option<Reached>) -> SourceId {
+        let origin = Origin::Model {
+            folder: folder.to_path_buf(),
+        };
+        self.add(Source::new(name.to_owned(), text, origin, reached))
+    }
+
     /// Gives the name to show for a file that another one names as `written`: beside that one.
     pub(crate) fn shown_beside(&self, naming: SourceId, written: &str) -> String {
         let mut parts: Vec<&str> = self.name(naming).split('/').collect();
@@ -178,18 +188,31 @@ impl Sources {
             .unwrap_or("")
     }
 
-    /// Says where a place is: `scene.ron:14:32`, or the flag for an argument.
+    /// Says where a place is: `scene.ron:14:32`; for an argument its flag.
     pub fn describe(&self, place: Place) -> impl fmt::Display + '_ {
-        let (line, column) = self.line_column(place);
-        let (name, is_file) = self.get(place.source).map_or(("", true), |source| {
-            (source.name.as_str(), source.origin != Origin::Argument)
-        });
+        let (_, column) = self.line_column(place);
         fmt::from_fn(move |f| {
-            if is_file {
-                write!(f, "{name}:{line}:{column}")
-            } else {
-                write!(f, "{name}")
+            write!(f, "{}", self.describe_line(place))?;
+            if self.is_argument(place.source) {
+                return Ok(());
+            }
+            write!(f, ":{column}")
+        })
+    }
+
+    /// Says in which line a place is: `scene.ron:14`; for an argument its flag, for a model
+    /// `spot.obj, as RON:14`, a line of what it was translated to.
+    pub fn describe_line(&self, place: Place) -> impl fmt::Display + '_ {
+        let (line, _) = self.line_column(place);
+        let found = self.get(place.source);
+        fmt::from_fn(move |f| {
+            let Some(source) = found else { return Ok(()) };
+            match source.origin {
+                Origin::File { .. } => write!(f, "{}:{line}", source.name),
+                Origin::Model { .. } => write!(f, "{}, as RON:{line}", source.name),
+                Origin::Argument => write!(f, "{}", source.name),
             }
         })
     }
+
 }

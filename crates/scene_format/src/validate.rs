@@ -135,7 +135,8 @@ pub(crate) fn resolve_assets(
             for field in &mut component.fields {
                 let place = field.place;
                 let mut resolve = |path: &mut String| {
-                    resolve_one(path, place, sources, folders, &mut uses).unwrap_or_else(|error| report.push_once(error));
+                    resolve_one(path, place, sources, folders, &mut uses)
+                        .unwrap_or_else(|error| report.push_once(error));
                 };
                 match &mut field.state {
                     FieldState::Constant(value) => each_asset(&mut **value, &mut resolve),

@@ -58,6 +58,11 @@ impl Bounds {
         }
     }
 
+    /// True when no coordinate is larger than `most`, and none is a NaN.
+    pub(crate) fn lies_within(&self, most: f32) -> bool {
+        self.min.abs().cmple(Vec3::splat(most)).all() && self.max.abs().cmple(Vec3::splat(most)).all()
+    }
+
     /// Smallest single-precision box around a double-precision one.
     pub(crate) fn around(min: DVec3, max: DVec3) -> Self {
         Self {

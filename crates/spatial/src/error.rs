@@ -16,8 +16,10 @@ pub enum SpatialError {
         /// Row of the instance.
         instance: usize,
     },
-    /// The geometry of an instance reaches beyond what single precision can hold.
-    #[error("instance {instance}: its world coordinates overflow; bring it nearer or make it smaller")]
+    /// The geometry of an instance reaches further than can be computed with in single precision.
+    #[error(
+        "instance {instance}: it reaches further than 1e15 m from the middle of the scene; bring it nearer or make it smaller"
+    )]
     Overflow {
         /// Row of the instance.
         instance: usize,
@@ -59,6 +61,14 @@ pub enum SpatialError {
         geometry: usize,
         /// `position`, `normal` or `uv`.
         attribute: &'static str,
+        /// The vertex.
+        vertex: usize,
+    },
+    /// A vertex of a mesh is further from the origin of its file than can be computed with in single precision.
+    #[error("geometry {geometry}: vertex {vertex} lies further than 1e15 from the origin; write smaller coordinates")]
+    VertexTooFar {
+        /// Row of the geometry.
+        geometry: usize,
         /// The vertex.
         vertex: usize,
     },

@@ -1,4 +1,4 @@
-use crate::SpatialError;
+use crate::{MOST_DISTANT, SpatialError};
 use glam::{DAffine3, Vec2, Vec3};
 use std::sync::Arc;
 
@@ -132,6 +132,10 @@ impl TriangleMesh {
             })
         };
         finite("position", self.positions.iter().position(|p| !p.is_finite()))?;
+        let too_far = |p: &Vec3| p.abs().max_element() > MOST_DISTANT;
+        if let Some(vertex) = self.positions.iter().position(too_far) {
+            return Err(SpatialError::VertexTooFar { geometry, vertex });
+        }
         if let Some(normals) = &self.normals {
             complete("normal", normals.len())?;
             finite("normal", normals.iter().position(|n| !n.is_finite()))?;

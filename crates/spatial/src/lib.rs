@@ -68,5 +68,5 @@ pub use error::SpatialError;
 pub use geometry::{Geometry, Instance, Shape, TriangleMesh};
 pub use photon_tree::{InvalidPhotonTree, Nearest, NearestScratch, Neighbour, PhotonTree, PhotonTreeError};
 pub use ray::{Ray, RayHit, SurfacePoint, connect, spawn_origin};
-pub use ray_scene::RayScene;
+pub use ray_scene::{MOST_DISTANT, RayScene};
 pub use sampling::{DirectionSample, SurfaceSample, SurfaceSampler};

@@ -8,6 +8,10 @@ use crate::triangle::Slot;
 use crate::{Bounds, Geometry, Instance, SpatialError, TriangleMesh};
 use std::sync::Arc;
 
+/// Coordinates beyond this are refused, metres: squares and products of areas overflow in single precision long before
+/// coordinates do, in the builder of the trees first of all.
+pub const MOST_DISTANT: f32 = 1e15;
+
 /// Geometry prepared for ray queries.
 ///
 /// One tree in world space holds triangles, analytic shapes and instanced meshes side by side. A mesh with a single
@@ -46,7 +50,7 @@ impl RayScene {
     /// # Errors
     ///
     /// Those of [`SpatialError`]: singular or non-finite transforms, rows out of range, non-finite vertices, shapes
-    /// without an extent.
+    /// without an extent, anything further than 10¹⁵ m from the origin.
     ///
     /// Cost: O(n log n) in triangles, about 1 µs each; single-threaded, deterministic.
     pub fn build(geometries: Vec<Geometry>, instances: Vec<Instance>) -> Result<Self, SpatialError> {
@@ -84,9 +88,7 @@ impl RayScene {
                     None => Bounds::EMPTY,
                 },
             };
-            let b = instance.bounds;
-            let finite = b.min.is_finite() && b.max.is_finite();
-            if !(finite || b.is_empty()) {
+            if !instance.bounds.is_empty() && !instance.bounds.lies_within(MOST_DISTANT) {
                 return Err(SpatialError::Overflow { instance: row });
             }
         }

@@ -125,6 +125,9 @@ fn what_cannot_be_traced_is_refused_with_its_row() {
     assert_eq!(build(sphere(), nan), SpatialError::NonFiniteTransform { instance: 1 });
     let far = DAffine3::from_translation(DVec3::X * 1e60);
     assert_eq!(build(sphere(), far), SpatialError::Overflow { instance: 1 });
+    // Single precision holds these coordinates, but not the areas of the boxes.
+    let large = DAffine3::from_scale(DVec3::splat(1e19));
+    assert_eq!(build(sphere(), large), SpatialError::Overflow { instance: 1 });
     let unknown = Instance {
         geometry: 7,
         world_from_object: DAffine3::IDENTITY,

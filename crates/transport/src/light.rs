@@ -81,6 +81,8 @@ pub(crate) enum Light {
 pub struct LightTable {
     lights: Vec<Light>,
     choice: Distribution,
+    /// How lights are chosen as seen from a point.
+    sampled_choice: Distribution,
     /// Row of the light on each instance, or `NONE`.
     light_of_instance: Vec<u32>,
     environment: Option<u32>,
@@ -97,6 +99,7 @@ impl LightTable {
         let mut table = Self {
             lights: Vec::new(),
             choice: Distribution::default(),
+            sampled_choice: Distribution::default(),
             light_of_instance: vec![NONE; rays.instance_count()],
             environment: None,
             bounding_sphere,
@@ -153,7 +156,8 @@ impl LightTable {
             table.lights.push(light);
             powers.push(power);
         }
-        table.choice = Distribution::new(powers);
+        table.choice = Distribution::new(powers.iter().copied());
+        table.sampled_choice = Distribution::new(sampling_weights(powers, table.environment));
         table
     }
 
@@ -176,7 +180,7 @@ impl LightTable {
     /// `None` when there is no light, or the sampled point of it does not shine this way.
     #[must_use]
     pub fn sample(&self, from: Vec3, u_choice: f32, u: Vec2) -> Option<LightSample> {
-        let (row, probability, _) = self.choice.sample(u_choice)?;
+        let (row, probability, _) = self.sampled_choice.sample(u_choice)?;
         match &self.lights[row] {
             Light::Point { position, intensity } => {
                 let offset = *position - from;
@@ -245,7 +249,7 @@ impl LightTable {
         match self.light_of(point) {
             Some(Light::Area { sampler, .. }) => {
                 let row = self.light_of_instance[point.instance as usize] as usize;
-                self.choice.probability(row) * sampler.pdf_toward(from, point)
+                self.sampled_choice.probability(row) * sampler.pdf_toward(from, point)
             }
             _ => 0.0,
         }
@@ -258,7 +262,7 @@ impl LightTable {
         let row = self.environment? as usize;
         match &self.lights[row] {
             Light::Environment { radiance } => {
-                Some((*radiance, self.choice.probability(row) * warp::PDF_UNIFORM_SPHERE))
+                Some((*radiance, self.sampled_choice.probability(row) * warp::PDF_UNIFORM_SPHERE))
             }
             _ => None,
         }
@@ -291,4 +295,18 @@ impl LightTable {
     pub(crate) fn bounding_sphere(&self) -> (Vec3, f32) {
         self.bounding_sphere
     }
+}
+
+/// Weights by which a point chooses a light: power, but an environment at most as much as all other lights together.
+///
+/// The power of an environment grows with the size of the scene, not so the light that it sends to a point of it: over a
+/// wide floor, a lamp that lights what one looks at would hardly ever be chosen.
+fn sampling_weights(mut powers: Vec<f64>, environment: Option<u32>) -> Vec<f64> {
+    if let Some(row) = environment {
+        let others = powers.iter().sum::<f64>() - powers[row as usize];
+        if others > 0.0 {
+            powers[row as usize] = powers[row as usize].min(others);
+        }
+    }
+    powers
 }

@@ -240,14 +240,11 @@ pub fn scatter(scene: &Scene, methods: &Methods, path: &mut Path, ray: &Ray, hit
 /// The medium after passing through a surface in direction `wi`: its material on the way in, nothing on the way out.
 pub(crate) fn medium_behind(scene: &Scene, hit: &SurfacePoint, wi: glam::Vec3, before: u32) -> u32 {
     let row = scene.material_row(hit);
-    match scene.material_by_row(row).bsdf {
-        scattering::Bsdf::Dielectric(glass) if !glass.is_thin() => {
-            if wi.dot(hit.ng) < 0.0 {
-                row
-            } else {
-                Path::VACUUM
-            }
-        }
-        _ => before,
+    if !scene.material_by_row(row).bsdf.has_inside() {
+        before
+    } else if wi.dot(hit.ng) < 0.0 {
+        row
+    } else {
+        Path::VACUUM
     }
 }

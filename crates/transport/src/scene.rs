@@ -10,7 +10,7 @@ use spatial::{RayScene, SurfacePoint};
 pub struct Material {
     /// How the surface scatters.
     pub bsdf: Bsdf,
-    /// Absorption coefficient inside the closed geometry, in m⁻¹; zero but for dielectrics.
+    /// Absorption coefficient inside the closed geometry, in m⁻¹; zero where the surface has no inside.
     pub absorption: Rgb,
 }
 

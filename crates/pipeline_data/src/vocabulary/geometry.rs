@@ -141,14 +141,20 @@ impl Default for Band {
     }
 }
 
-/// Triangles from a file, all of its groups together. Prims that name the same file share it in memory.
+/// Triangles from a file. Prims that name the same part of a file share it in memory.
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(Component, Default)]
 pub struct Mesh {
-    /// A Wavefront `.obj` file, relative to the scene file that names it. Its faces must run counter-clockwise seen from
-    /// outside; its materials are not read.
+    /// A Wavefront `.obj` file or a glTF 2.0 file, `.gltf` or `.glb`, relative to the scene file that names it. Its faces
+    /// must run counter-clockwise seen from outside. Its materials are not read here: a reference to the file brings them.
     #[reflect(@Required)]
     pub file: AssetPath,
+    /// The mesh of a glTF file, or the object or group of an `.obj` file: its name, or `#3` for its number, from 0. Left
+    /// out, the only mesh of a glTF file, or all of an `.obj` file.
+    pub mesh: Option<String>,
+    /// One primitive of the mesh, from 0; in an `.obj` file what the object has of one material. Left out, all of them.
+    #[reflect(@Range::at_least(0.0))]
+    pub primitive: Option<u32>,
     /// Whether the file's normals shade the surface. Without them, or when off, faces look flat: none are invented.
     pub smooth: bool,
 }
@@ -157,6 +163,8 @@ impl Default for Mesh {
     fn default() -> Self {
         Self {
             file: AssetPath::default(),
+            mesh: None,
+            primitive: None,
             smooth: true,
         }
     }

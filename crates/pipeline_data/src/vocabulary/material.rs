@@ -107,3 +107,31 @@ impl Default for Dielectric {
         }
     }
 }
+
+/// Plastic, lacquer, glazed tiles: a matt base under a clear coat. Two-sided.
+///
+/// Light passes the coat, is scattered by the base, and is reflected down again by the coat from inside before it leaves;
+/// so it looks darker and more saturated than its `albedo`.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(Component, Default)]
+pub struct Plastic {
+    /// Share of light that the base would reflect without its coat.
+    #[reflect(@Range::closed(0.0, 1.0))]
+    pub albedo: Vec3,
+    /// Index of refraction of the coat relative to the outside; higher ones reflect more. 1 is no coat.
+    #[reflect(@Range::closed(1.0, 4.0))]
+    pub ior: f32,
+    /// Of the coat: 0 is polished, 1 nearly matt; the GGX width is its square.
+    #[reflect(@Range::closed(0.0, 1.0))]
+    pub roughness: f32,
+}
+
+impl Default for Plastic {
+    fn default() -> Self {
+        Self {
+            albedo: Vec3::splat(0.5),
+            ior: 1.5,
+            roughness: 0.1,
+        }
+    }
+}

@@ -17,6 +17,7 @@ mod findings;
 mod geometry;
 mod light;
 mod material;
+mod principled;
 mod render;
 mod structure;
 #[cfg(test)]
@@ -29,7 +30,8 @@ pub use geometry::{
     Band, Cuboid, Cylinder, Disc, GeometryComponents, GeometryComponentsItem, GeometrySource, Mesh, Quad, Sphere, Torus,
 };
 pub use light::{Emission, EnvironmentLight, PointLight};
-pub use material::{Conductor, Dielectric, Diffuse};
+pub use material::{Conductor, Dielectric, Diffuse, Plastic};
+pub use principled::Principled;
 pub use render::{CausticMethod, DirectMethod, IndirectMethod, LightTransport, Render, SpecularMethod};
 pub use structure::{LookAt, MaterialBinding, Transform};
 
@@ -54,6 +56,8 @@ impl Plugin for VocabularyPlugin {
             .register_type::<Diffuse>()
             .register_type::<Conductor>()
             .register_type::<Dielectric>()
+            .register_type::<Plastic>()
+            .register_type::<Principled>()
             .register_type::<Emission>()
             .register_type::<PointLight>()
             .register_type::<EnvironmentLight>()

@@ -19,8 +19,10 @@ Film            | resolution (512, 512) | filter BlackmanHarris | filter_radius 
 LightTransport  | direct SampleLights | specular Trace | caustic PhotonMap | indirect PathTrace | specular_alpha 0.05
 LookAt          | target - | up (0, 1, 0)
 MaterialBinding | target -
-Mesh            | file - | smooth true
+Mesh            | file - | mesh ? | primitive ? | smooth true
+Plastic         | albedo (0.5, 0.5, 0.5) | ior 1.5 | roughness 0.1
 PointLight      | power (1, 1, 1) | intensity ?
+Principled      | base_color (0.5, 0.5, 0.5) | metallic 0 | roughness 0.5 | ior 1.5 | specular 1 | specular_color (1, 1, 1) | transmission 0 | thickness 0 | attenuation_color (1, 1, 1) | attenuation_distance ? | clearcoat 0 | clearcoat_roughness 0 | sheen (0, 0, 0) | sheen_roughness 0 | emission (0, 0, 0) | alpha 1
 Quad            | size (1, 1)
 Render          | camera - | samples 64 | max_depth ? | seed 0 | passes ?
 Sphere          | radius 1
@@ -130,6 +132,9 @@ fn numbers_out_of_range_are_refused() {
         "Quad: (size: (1, -1))",
         "Diffuse: (albedo: (0.5, 0.5, 1.5))",
         "Dielectric: (ior: 0)",
+        "Plastic: (ior: 0.9)",
+        "Principled: (metallic: 1.1)",
+        "Principled: (attenuation_distance: 0)",
         "Dielectric: (absorption: (-1, 0, 0))",
         "Emission: (radiance: (-1, 0, 0))",
         "Camera: (fov: 180)",

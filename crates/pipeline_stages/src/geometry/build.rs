@@ -6,7 +6,6 @@ use pipeline_data::{Acceleration, InstancePrims, MeshStore, PrimIndex, SceneOrig
 use scene_format::{Diagnostic, Scene};
 use spatial::{Geometry, Instance, RayScene, SpatialError, TriangleMesh};
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Geometries and instances as `spatial` wants them, with what the instances came from.
@@ -20,6 +19,9 @@ struct Parts<'a> {
     /// Row of the geometry of a mesh, by row in the store and whether it is shaded by its normals.
     row_of_mesh: BTreeMap<(usize, bool), u32>,
 }
+
+/// Rounding of coordinates by more than this share of the size of a thing is worth a warning.
+const MOST_ROUNDING: f32 = 0.01;
 
 /// Collects all geometry, moved to the scene's origin, and builds the ray scene.
 pub(super) fn build_acceleration(
@@ -58,7 +60,10 @@ pub(super) fn build_acceleration(
     counters.counter("geometry/instances").add(parts.instances.len() as u64);
     if !findings.has_error() && !check.failed() {
         match RayScene::build(parts.geometries.clone(), parts.instances.clone()) {
-            Ok(rays) => acceleration.0 = Some(rays),
+            Ok(rays) => {
+                parts.warn_of_rounding(&rays, scene, &mut findings);
+                acceleration.0 = Some(rays);
+            }
             Err(error) => parts.find_errors(&error, scene, &mut findings),
         }
     }
@@ -103,7 +108,7 @@ impl Parts<'_> {
 
     /// Row of the geometry of a mesh, and where its middle lies in the coordinates of the file.
     fn add_mesh(&mut self, mesh: &Mesh) -> Option<(u32, DVec3)> {
-        let row = self.store.row_of(Path::new(&mesh.file.0))?;
+        let row = self.store.row_of(mesh)?;
         let imported = &self.store.meshes()[row];
         let smooth = mesh.smooth || imported.mesh.normals.is_none();
         let geometry = match self.row_of_mesh.get(&(row, smooth)) {
@@ -120,6 +125,31 @@ impl Parts<'_> {
             }
         };
         Some((geometry, imported.origin))
+    }
+
+    /// Says which prims are so small and so far from the middle of the scene that single precision distorts them.
+    fn warn_of_rounding(&self, rays: &RayScene, scene: &Scene, findings: &mut Findings) {
+        let reach = |row: &usize| {
+            let bounds = rays.instance_bounds(*row as u32);
+            let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
+            (!bounds.is_empty() && reach * f32::EPSILON > MOST_ROUNDING * bounds.diagonal()).then_some(reach)
+        };
+        let mut lost = (0..self.instances.len()).filter_map(|row| Some((row, reach(&row)?)));
+        let Some((row, distance)) = lost.next() else { return };
+        let path = &scene.prims[self.prims[row] as usize].path;
+        let others = match lost.count() {
+            0 => String::new(),
+            1 => " and 1 other".into(),
+            n => format!(" and {n} others"),
+        };
+        let message = format!("`{path}`{others}: too small for so large a scene, rounding distorts it");
+        let finding = Diagnostic::warning("lost-in-rounding", message)
+            .note(format!(
+                "it lies {distance:.1e} m from the middle of the scene, where single precision resolves {:.1e} m",
+                distance * f32::EPSILON
+            ))
+            .note("bring what is far off nearer, or leave it out");
+        findings.push_at(component_place(scene, self.prims[row], self.components[row]), finding);
     }
 
     /// Says what is wrong with which prim, after the whole could not be built because of `first`.

@@ -264,9 +264,26 @@ fn impossible_geometry_is_refused_with_its_place() {
         errors[1]
     );
     assert!(
-        errors[2].contains("error[too-far]: `/D`") && errors[2].contains("overflow"),
+        errors[2].contains("error[too-far]: `/D`") && errors[2].contains("bring it nearer"),
         "{}",
         errors[2]
+    );
+}
+
+#[test]
+fn what_rounding_swallows_is_a_warning() {
+    let near = prepare("\"/A\": Def(Sphere: ()), \"/B\": Def(Sphere: (), Transform: (translate: (1e5, 0, 0))),\n");
+    assert_eq!(near.world().resource::<Report>().warnings(), [""; 0]);
+    let far = prepare(
+        "\"/A\": Def(Sphere: ()),\n\"/B\": Def(Sphere: ()),\n\"/C\": Def(Sphere: (), Transform: (translate: (1e9, 0, 0))),\n",
+    );
+    assert_eq!(errors(&far), "");
+    let warnings = far.world().resource::<Report>().warnings();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(
+        warnings[0].contains("warning[lost-in-rounding]: `/A`") && warnings[0].contains("2 others"),
+        "{}",
+        warnings[0]
     );
 }
 

@@ -7,7 +7,6 @@ use pipeline_data::vocabulary::{
 };
 use pipeline_data::{MeshStore, PrimIndex, SceneOrigin, WorldTransform};
 use scene_format::{Diagnostic, FieldState, Place, Scene};
-use std::path::Path;
 
 type Placeable<'a> = (
     Entity,
@@ -69,7 +68,7 @@ fn add_geometry(around: &mut WorldBox, world: &DAffine3, geometry: &GeometryComp
             around.add(world, -half, half);
         }
         Some((_, GeometrySource::Mesh(mesh))) => {
-            if let Some(mesh) = store.get(Path::new(&mesh.file.0)) {
+            if let Some(mesh) = store.get(mesh) {
                 let corner = |p: glam::Vec3| -> DVec3 { mesh.origin + p.as_dvec3() };
                 around.add(world, corner(mesh.bounds.0), corner(mesh.bounds.1));
             }

@@ -1,9 +1,11 @@
 use super::allocate::{checkpoint_key, checkpoint_path};
 use super::resolve::ResolvedImage;
 use bevy_ecs::prelude::*;
-use film::Metadata;
+use film::{Image, Metadata};
 use pipeline_core::{RenderClock, Report};
+use pipeline_data::vocabulary::{Findings, field_place};
 use pipeline_data::{ComposedScene, FilmSums, RenderRequest, RenderSettings};
+use scene_format::{Diagnostic, Scene};
 use std::fmt::Write as _;
 
 /// Writes the files that the request names; a checkpoint beside them when samples are missing.
@@ -32,6 +34,9 @@ pub(super) fn write_images(
         version: env!("CARGO_PKG_VERSION").into(),
         extra: Vec::new(),
     };
+    if clock.waves_done >= clock.waves_total {
+        warn_of_black_image(&image.0, &scene.0, &settings, &request, &mut report);
+    }
     let has_samples = (0..film.0.pixel_count()).any(|i| film.0.sample_count(i) > 0);
     for path in &request.outputs {
         if !has_samples && path.exists() {
@@ -70,4 +75,35 @@ pub(super) fn write_images(
             ));
         }
     }
+}
+
+/// A black image is hardly ever what was meant, so it never comes without a word.
+fn warn_of_black_image(
+    image: &Image,
+    scene: &Scene,
+    settings: &RenderSettings,
+    request: &RenderRequest,
+    report: &mut Report,
+) {
+    let is_zero = |name: &str| {
+        let channel = image.channels.iter().find(|channel| channel.name == name);
+        channel.is_none_or(|channel| channel.samples.iter().all(|value| *value == 0.0))
+    };
+    if !["R", "G", "B"].into_iter().all(is_zero) {
+        return;
+    }
+    let finding = Diagnostic::warning("black-image", "the whole image is black");
+    let finding = if is_zero("A") {
+        finding
+            .note("the camera sees neither geometry nor an environment")
+            .note("turn it with `LookAt`, or move it; it looks along its -Z")
+    } else {
+        finding
+            .note("the camera sees geometry, but no light comes from it")
+            .note("is the camera or every light inside of something, or on the dark side of it?")
+            .note("an `Emission` shines on the side of the normal, unless it is `two_sided`")
+    };
+    let mut findings = Findings::default();
+    findings.push_at(field_place(scene, settings.render_prim, "Render", &["camera"]), finding);
+    findings.file(scene, request, report);
 }

@@ -4,8 +4,9 @@ use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use pipeline_core::{CorePlugin, Counters, Load, Report};
-use pipeline_data::vocabulary::{Camera, Sphere, Transform};
+use pipeline_data::vocabulary::{Camera, Mesh, Sphere, Transform};
 use pipeline_data::{ComposedScene, MeshStore, PrimIndex, RenderRequest};
+use scene_format::AssetPath;
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -164,7 +165,11 @@ fn each_mesh_file_is_loaded_once() {
         (glam::Vec3::new(-0.5, -0.5, 0.0), glam::Vec3::new(0.5, 0.5, 0.0))
     );
     assert!(!mesh.is_closed());
-    assert_eq!(store.row_of(&mesh.path), Some(0));
+    let named = Mesh {
+        file: AssetPath(mesh.key.path.display().to_string()),
+        ..Mesh::default()
+    };
+    assert_eq!(store.row_of(&named), Some(0));
     assert_eq!(app.world().resource::<Counters>().get("load/triangles"), 1);
 }
 
@@ -234,4 +239,81 @@ fn oddities_of_a_mesh_are_warnings() {
         "{}",
         warnings(&app)
     );
+}
+
+/// A `.gltf` file of two triangles at z = 0 and z = 1 that share a buffer, the second in a mesh of its own.
+fn two_triangles() -> (String, Vec<u8>) {
+    let mut bytes = Vec::new();
+    for z in [0.0_f32, 1.0] {
+        for [x, y] in [[0.0_f32, 0.0], [1.0, 0.0], [0.0, 1.0]] {
+            for number in [x, y, z] {
+                bytes.extend(number.to_le_bytes());
+            }
+        }
+    }
+    let view = |offset: usize| format!(r#"{{"buffer": 0, "byteOffset": {offset}, "byteLength": 36}}"#);
+    let accessor =
+        |view: usize| format!(r#"{{"bufferView": {view}, "componentType": 5126, "count": 3, "type": "VEC3"}}"#);
+    let mesh = |name: &str, accessor: usize| {
+        format!(r#"{{"name": "{name}", "primitives": [{{"attributes": {{"POSITION": {accessor}}}}}]}}"#)
+    };
+    let text = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "buffers": [{{"uri": "two.bin", "byteLength": 72}}],
+            "bufferViews": [{}, {}], "accessors": [{}, {}], "meshes": [{}, {}]}}"#,
+        view(0),
+        view(36),
+        accessor(0),
+        accessor(1),
+        mesh("Near", 0),
+        mesh("Far", 1)
+    );
+    (text, bytes)
+}
+
+fn load_two_triangles(scene: &str, change: impl FnOnce(&mut Vec<u8>)) -> App {
+    let (text, mut bytes) = two_triangles();
+    change(&mut bytes);
+    let folder = folder(&[("scene.ron", scene), ("two.gltf", &text)]);
+    std::fs::write(folder.path().join("two.bin"), bytes).unwrap();
+    load_with(&folder.path().join("scene.ron"), |_| ())
+}
+
+const TWO_PRIMS: &str = r#"Layer(prims: {
+    "/A": Def(Mesh: (file: "two.gltf", mesh: "Far")), "/B": Def(Mesh: (file: "two.gltf", mesh: "Near", primitive: 0)),
+    "/C": Def(Mesh: (file: "two.gltf", mesh: "Far")),
+})"#;
+
+#[test]
+fn meshes_of_a_gltf_file_are_told_apart() {
+    let app = load_two_triangles(TWO_PRIMS, |_| ());
+    assert_eq!(errors(&app), "");
+    let store = app.world().resource::<MeshStore>();
+    let origins: Vec<f64> = store.meshes().iter().map(|mesh| mesh.origin.z).collect();
+    assert_eq!(origins, [1.0, 0.0]);
+    assert_eq!(store.meshes()[1].key.part.primitive, Some(0));
+}
+
+#[test]
+fn the_bytes_of_buffers_are_part_of_the_hash() {
+    let hash = |change: fn(&mut Vec<u8>)| {
+        let app = load_two_triangles(TWO_PRIMS, change);
+        app.world().resource::<ComposedScene>().0.hash
+    };
+    assert_eq!(hash(|_| ()), hash(|_| ()));
+    assert_ne!(hash(|_| ()), hash(|bytes| bytes[3] = 1));
+}
+
+#[test]
+fn a_mesh_that_is_not_in_its_file_is_an_error_and_one_without_area_a_warning() {
+    let scene = "Layer(prims: {\n  \"/A\": Def(Mesh: (file: \"two.gltf\", mesh: \"Fur\")),\n})";
+    let app = load_two_triangles(scene, |_| ());
+    let found = errors(&app);
+    assert!(
+        found.contains("did you mean \"Far\"?") && found.contains("scene.ron:2:"),
+        "{found}"
+    );
+    let app = load_two_triangles(TWO_PRIMS, |bytes| bytes[36..].fill(0));
+    assert_eq!(errors(&app), "");
+    assert!(warnings(&app).contains("warning[flat-mesh]"), "{}", warnings(&app));
+    assert_eq!(app.world().resource::<MeshStore>().meshes().len(), 1);
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use pipeline_core::{Report, record_items};
 use pipeline_data::{CausticPhoton, Photon};
 use radiometry::unpack_direction;
-use spatial::PhotonTree;
+use spatial::{PhotonTree, PhotonTreeError};
 use transport::{DensitySettings, PhotonColumns, PhotonMap};
 
 /// The caustic photon map, ready to be read. Written by `build_photon_map`, read by `gather_caustics`.
@@ -34,20 +34,27 @@ pub(super) fn build_photon_map(
         }
     };
     record_items(photons.len());
-    match PhotonTree::from_fn(photons.len(), |row| Vec3::from_array(photons[row].position)) {
-        Ok(tree) => {
-            let rows = || tree.rows().iter().map(|row| &photons[*row as usize]);
-            let columns = PhotonColumns {
-                flux: rows().map(|p| p.flux).collect(),
-                direction: rows().map(|p| p.direction).collect(),
-                normal: rows().map(|p| unpack_direction(p.normal)).collect(),
-            };
-            commands.insert_resource(CausticMap {
-                map: PhotonMap { tree, columns },
-                density: run.density,
-            });
+    match caustic_map(photons) {
+        Ok(map) => {
+            let density = run.density;
+            commands.insert_resource(CausticMap { map, density });
         }
         Err(error) => report.warn(format!("warning[photon-map]: there is no caustic photon map: {error}")),
     }
     commands.remove_resource::<PhotonRun>();
+}
+
+/// Builds the tree over photons and copies what an estimate reads into its order.
+///
+/// # Errors
+/// A photon whose position is not finite, or more photons than a tree can hold.
+pub fn caustic_map(photons: &[Photon]) -> Result<PhotonMap, PhotonTreeError> {
+    let tree = PhotonTree::from_fn(photons.len(), |row| Vec3::from_array(photons[row].position))?;
+    let rows = || tree.rows().iter().map(|row| &photons[*row as usize]);
+    let columns = PhotonColumns {
+        flux: rows().map(|p| p.flux).collect(),
+        direction: rows().map(|p| p.direction).collect(),
+        normal: rows().map(|p| unpack_direction(p.normal)).collect(),
+    };
+    Ok(PhotonMap { tree, columns })
 }

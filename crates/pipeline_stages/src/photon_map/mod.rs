@@ -20,6 +20,8 @@ mod gather;
 mod plan;
 mod settings;
 mod store;
+#[cfg(test)]
+mod tests;
 mod trace;
 
 use bevy_app::{App, Plugin};
@@ -31,7 +33,7 @@ use pipeline_core::{Bounce, BounceSystems, PhotonPass, PhotonSystems, Prepare, P
 use pipeline_data::{Contributions, Photon};
 use transport::{DensitySettings, EmittedPhoton};
 
-pub use build::CausticMap;
+pub use build::{CausticMap, caustic_map};
 pub use gather::CausticContribution;
 pub use settings::{CausticPhotonMap, PhotonFilter};
 pub use store::{PhotonPool, store_in_pool};

@@ -38,8 +38,11 @@ pub(super) fn store_photons(
             .collect();
         commands.spawn_batch(new);
     }
-    for entity in entities.iter().skip(photons.len()) {
-        commands.entity(entity).despawn();
+    // Counting costs nothing, walking a million entities to find none too many does.
+    if entities.iter().len() > photons.len() {
+        for entity in entities.iter().skip(photons.len()) {
+            commands.entity(entity).despawn();
+        }
     }
 }
 

@@ -1,3 +1,4 @@
+use super::materials::MaterialTable;
 use bevy_ecs::prelude::*;
 use glam::Vec3;
 use pipeline_core::Counters;
@@ -7,6 +8,7 @@ use pipeline_data::vocabulary::{
 use pipeline_data::{Acceleration, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, WorldTransform};
 use radiometry::Rgb;
 use scene_format::{Diagnostic, Place, Scene};
+use spatial::MOST_DISTANT;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use transport::LightSource;
@@ -41,10 +43,12 @@ struct Collector<'a> {
 }
 
 /// Turns light components into sources in world space, and checks that there is light at all.
+#[expect(clippy::too_many_arguments, reason = "a system lists all that it touches")]
 pub(super) fn list_lights(
     mut check: SceneReport,
     acceleration: Res<Acceleration>,
     instances: Res<InstancePrims>,
+    materials: Res<MaterialTable>,
     origin: Res<SceneOrigin>,
     mut counters: ResMut<Counters>,
     mut list: ResMut<LightList>,
@@ -74,6 +78,11 @@ pub(super) fn list_lights(
         }
         if let Some(environment) = environment {
             collector.add_environment(index.0, environment);
+        }
+    }
+    for (instance, glow) in (0..).zip(&materials.glow_of_instance) {
+        if let Some((radiance, material)) = glow {
+            collector.add_glow(instance, *radiance, *material);
         }
     }
     // After an error, what seems to be missing may be what was wrong.
@@ -139,13 +148,31 @@ impl Collector<'_> {
         self.add(prim, "Emission", radiance, source);
     }
 
+    /// A surface that shines because its material does.
+    ///
+    /// - `material`: the prim with the material.
+    fn add_glow(&mut self, instance: u32, radiance: Rgb, material: u32) {
+        let Some(rays) = &self.acceleration.0 else { return };
+        let area = rays.instance_area(instance);
+        if area.is_nan() || area <= 0.0 {
+            self.dark.get_or_insert((material, "Principled"));
+            return;
+        }
+        let source = LightSource::Area {
+            instance,
+            radiance,
+            two_sided: false,
+        };
+        self.add(material, "Principled", radiance, source);
+    }
+
     fn add_point(&mut self, prim: u32, light: &PointLight, world: &WorldTransform) {
         let intensity: Rgb = match light.intensity {
             Some(intensity) => intensity.into(),
             None => Rgb::from(light.power) * (0.25 / PI) as f32,
         };
         let position = (world.0.translation - self.origin.0).as_vec3();
-        if !position.is_finite() {
+        if !position.is_finite() || position.abs().max_element() > MOST_DISTANT {
             let message = format!(
                 "`{}` is too far from the scene's geometry for single precision",
                 self.path(prim)
@@ -218,8 +245,9 @@ impl Collector<'_> {
                     )
                 }
             };
-            self.findings
-                .push(finding.note("lights: PointLight, EnvironmentLight, and any geometry with Emission"));
+            self.findings.push(finding.note(
+                "lights: PointLight, EnvironmentLight, and any geometry with Emission or a Principled that emits",
+            ));
         } else if self.instance_of_prim.is_empty() {
             let message = format!("{scene} has no geometry");
             let note = "geometry: Sphere, Quad, Disc, Cuboid, Cylinder, Torus, Band, Mesh";

@@ -1,24 +1,28 @@
-use super::surface::{conductor_material, dielectric_material, diffuse_material};
+use super::surface::{
+    conductor_material, dielectric_material, diffuse_material, plastic_material, principled_material,
+};
 use bevy_ecs::prelude::*;
 use pipeline_core::{Counters, record_items};
 use pipeline_data::vocabulary::{
     Conductor, Dielectric, Diffuse, Emission, Findings, GeometryComponents, GeometryComponentsItem, GeometrySource,
-    LightTransport, MaterialBinding, SceneReport, component_place, field_place,
+    LightTransport, MaterialBinding, Plastic, Principled, SceneReport, component_place, field_place,
 };
 use pipeline_data::{InstancePrims, MeshStore, PrimIndex, RenderSettings};
+use radiometry::Rgb;
 use scene_format::{Diagnostic, Scene};
 use std::collections::BTreeMap;
-use std::path::Path;
 use transport::Material;
 
 /// Names of the material components, for messages.
-const MATERIALS: &str = "Diffuse, Conductor, Dielectric";
+const MATERIALS: &str = "Diffuse, Conductor, Dielectric, Plastic, Principled";
 
 /// Materials by row, and the row of each instance. On its way to `join_tables`.
 #[derive(Resource, Default)]
 pub(super) struct MaterialTable {
     pub(super) materials: Vec<Material>,
     pub(super) of_instance: Vec<u32>,
+    /// Radiance that the material of each instance emits by itself, and the prim with the material.
+    pub(super) glow_of_instance: Vec<Option<(Rgb, u32)>>,
 }
 
 type MaterialPrim<'a> = (
@@ -26,15 +30,25 @@ type MaterialPrim<'a> = (
     Option<&'a Diffuse>,
     Option<&'a Conductor>,
     Option<&'a Dielectric>,
+    Option<&'a Plastic>,
+    Option<&'a Principled>,
 );
-type HasMaterial = Or<(With<Diffuse>, With<Conductor>, With<Dielectric>)>;
+type HasMaterial = Or<(
+    With<Diffuse>,
+    With<Conductor>,
+    With<Dielectric>,
+    With<Plastic>,
+    With<Principled>,
+)>;
 
 /// A material component as a row.
 #[derive(Clone, Copy)]
 struct Row {
     row: u32,
     prim: u32,
+    component: &'static str,
     needs_inside: bool,
+    glow: Rgb,
 }
 
 /// Rows by prim, and who uses which.
@@ -83,6 +97,12 @@ pub(super) fn build_material_table(
         };
         let row = rows.row_for(*prim, *emits);
         rows.table.of_instance.push(row);
+        let glow = rows
+            .component_for(*prim)
+            .filter(|found| !emits && !found.glow.is_black());
+        rows.table
+            .glow_of_instance
+            .push(glow.map(|found| (found.glow, found.prim)));
         rows.check_inside(*prim, parts, &store, &mut findings);
     }
     record_items(rows.table.of_instance.len());
@@ -111,12 +131,14 @@ impl Rows<'_> {
     ) {
         let mut all: Vec<_> = materials.iter().collect();
         all.sort_by_key(|(index, ..)| **index);
-        for (index, diffuse, conductor, dielectric) in all {
+        for (index, diffuse, conductor, dielectric, plastic, principled) in all {
             let prim = index.0;
             let names = [
                 diffuse.map(|_| "Diffuse"),
                 conductor.map(|_| "Conductor"),
                 dielectric.map(|_| "Dielectric"),
+                plastic.map(|_| "Plastic"),
+                principled.map(|_| "Principled"),
             ];
             let names: Vec<&str> = names.into_iter().flatten().collect();
             if let [first, second, ..] = names[..] {
@@ -131,20 +153,28 @@ impl Rows<'_> {
                 }
                 findings.push_at(component_place(self.scene, prim, second), finding);
             }
-            let material = match (diffuse, conductor, dielectric) {
-                (Some(diffuse), _, _) => diffuse_material(diffuse),
-                (_, Some(conductor), _) => conductor_material(conductor, specular_alpha, self.scene, prim, findings),
-                (_, _, Some(dielectric)) => dielectric_material(dielectric, specular_alpha, self.scene, prim, findings),
-                _ => continue,
+            let material = if let Some(diffuse) = diffuse {
+                diffuse_material(diffuse)
+            } else if let Some(conductor) = conductor {
+                conductor_material(conductor, specular_alpha, self.scene, prim, findings)
+            } else if let Some(dielectric) = dielectric {
+                dielectric_material(dielectric, specular_alpha, self.scene, prim, findings)
+            } else if let Some(plastic) = plastic {
+                plastic_material(plastic, specular_alpha)
+            } else if let Some(principled) = principled {
+                principled_material(principled, specular_alpha, self.scene, prim, findings)
+            } else {
+                continue;
             };
             let row = self.add(material);
-            let needs_inside = dielectric.is_some_and(|dielectric| !dielectric.thin);
             self.of_prim.insert(
                 prim,
                 Row {
                     row,
                     prim,
-                    needs_inside,
+                    component: names.first().copied().unwrap_or_default(),
+                    needs_inside: material.bsdf.has_inside(),
+                    glow: principled.map_or(Rgb::BLACK, |principled| principled.emission.into()),
                 },
             );
         }
@@ -228,7 +258,7 @@ impl Rows<'_> {
         };
         let closed = match source {
             GeometrySource::Shape(shape) => shape.is_closed(),
-            GeometrySource::Mesh(mesh) => store.get(Path::new(&mesh.file.0)).is_none_or(|mesh| mesh.is_closed()),
+            GeometrySource::Mesh(mesh) => store.get(mesh).is_none_or(|mesh| mesh.is_closed()),
         };
         if closed {
             return;
@@ -236,8 +266,11 @@ impl Rows<'_> {
         let message = format!("`{}` is of glass, but its geometry is not closed", self.path(prim));
         let mut finding = Diagnostic::error("open-geometry", message)
             .note("without an inside and an outside, light does not know which way to bend")
-            .note("close it, or write `Dielectric: (thin: true)` for a pane");
-        if let Some(place) = component_place(self.scene, material.prim, "Dielectric") {
+            .note(match material.component {
+                "Principled" => "close it, or write `Principled: (thickness: 0)` for a pane",
+                _ => "close it, or write `Dielectric: (thin: true)` for a pane",
+            });
+        if let Some(place) = component_place(self.scene, material.prim, material.component) {
             finding = finding.also(place, "the material".to_owned());
         }
         findings.push_at(component_place(self.scene, prim, name), finding);

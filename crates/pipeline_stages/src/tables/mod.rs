@@ -1,7 +1,7 @@
 //! Tables: materials, lights, camera and settings, checked and by row.
 //!
 //! Scene: exactly one prim with `Render`, beside it `Film` and `LightTransport`; a `Camera`; `Diffuse`, `Conductor`,
-//! `Dielectric` and `MaterialBinding`; `Emission`, `PointLight`, `EnvironmentLight`.
+//! `Dielectric`, `Plastic`, `Principled` and `MaterialBinding`; `Emission`, `PointLight`, `EnvironmentLight`.
 //! Set: [`PrepareSystems::BuildTables`]. `resolve_settings` joins scene and command line into
 //! [`RenderSettings`](pipeline_data::RenderSettings) and [`CameraFrame`](pipeline_data::CameraFrame);
 //! `build_material_table` finds the material of every instance; `list_lights` turns emission and power into radiance and

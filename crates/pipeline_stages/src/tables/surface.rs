@@ -1,8 +1,11 @@
 //! From a material component to the row that light transport reads.
 
-use pipeline_data::vocabulary::{Conductor, Dielectric, Diffuse, Findings, field_place};
-use radiometry::Rgb;
-use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, DiffuseBsdf, Metal, Microsurface};
+use pipeline_data::vocabulary::{Conductor, Dielectric, Diffuse, Findings, Plastic, Principled, field_place};
+use radiometry::{Rgb, math};
+use scattering::{
+    Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, DiffuseBsdf, Metal, Microsurface, PlasticBsdf,
+    PrincipledBsdf, PrincipledParameters,
+};
 use scene_format::{Diagnostic, Scene};
 use transport::Material;
 
@@ -91,4 +94,55 @@ pub(super) fn dielectric_material(
         bsdf: Bsdf::Dielectric(DielectricBsdf::thin(dielectric.ior, dielectric.tint.into())),
         absorption: Rgb::BLACK,
     }
+}
+
+/// A matt base under a coat.
+pub(super) fn plastic_material(plastic: &Plastic, specular_alpha: f32) -> Material {
+    let surface = Microsurface::from_roughness(plastic.roughness, specular_alpha);
+    Material {
+        bsdf: Bsdf::Plastic(PlasticBsdf::new(plastic.albedo.into(), plastic.ior, surface)),
+        absorption: Rgb::BLACK,
+    }
+}
+
+/// The layered material of glTF, but its emission. What cannot be served is reported.
+pub(super) fn principled_material(
+    principled: &Principled,
+    specular_alpha: f32,
+    scene: &Scene,
+    prim: u32,
+    findings: &mut Findings,
+) -> Material {
+    if principled.alpha < 1.0 {
+        let finding = Diagnostic::error("not-supported-yet", "`Principled.alpha` below 1 is not supported yet")
+            .note("`transmission` makes a surface clear");
+        findings.push_at(field_place(scene, prim, "Principled", &["alpha"]), finding);
+    }
+    let parameters = PrincipledParameters {
+        base_color: principled.base_color.into(),
+        metallic: principled.metallic,
+        roughness: principled.roughness,
+        ior: principled.ior,
+        specular: principled.specular,
+        specular_color: principled.specular_color.into(),
+        transmission: principled.transmission,
+        solid: principled.thickness > 0.0,
+        clearcoat: principled.clearcoat,
+        clearcoat_roughness: principled.clearcoat_roughness,
+        sheen: principled.sheen.into(),
+        sheen_roughness: principled.sheen_roughness,
+    };
+    let bsdf = Bsdf::Principled(PrincipledBsdf::new(&parameters, specular_alpha));
+    let absorption = match principled.attenuation_distance {
+        Some(distance) if bsdf.has_inside() => absorption_of(principled.attenuation_color.into(), distance),
+        _ => Rgb::BLACK,
+    };
+    Material { bsdf, absorption }
+}
+
+/// The coefficient that leaves `colour` after `distance`: σ = −ln(colour)/distance, in m⁻¹.
+fn absorption_of(colour: Rgb, distance: f32) -> Rgb {
+    /// Nothing left would take an infinite coefficient.
+    const LEAST: f32 = 1e-6;
+    colour.map(|c| -math::ln(c.clamp(LEAST, 1.0)) / distance)
 }

@@ -10,7 +10,8 @@ const SAMPLES: usize = 200_000;
 /// Standard normal deviate that the statistic may reach: one in 30,000 correct samplers would exceed it.
 const LARGEST_DEVIATE: f64 = 4.0;
 
-/// Expected share of samples in each bin of the sphere, and in a last one for draws without a direction.
+/// Expected share of samples in each bin of the sphere, and in a last one for draws without a direction and those of
+/// delta lobes.
 ///
 /// The points are a lattice with no two neighbours on a parallel: the density of rough glass jumps along one, which rows
 /// of points would misjudge.
@@ -40,7 +41,7 @@ fn observed(bsdf: &Bsdf, wo: Vec3, seed: u64) -> Vec<f64> {
     let mut numbers = Numbers(seed << 40);
     for _ in 0..SAMPLES {
         let sample = bsdf.sample(wo, numbers.next(), numbers.next_2d(), Transport::Radiance);
-        let bin = sample.map_or(THETA_BINS * PHI_BINS, |s| {
+        let bin = sample.filter(|s| !s.is_delta()).map_or(THETA_BINS * PHI_BINS, |s| {
             let row = (math::acos(s.wi.z) / PI * THETA_BINS as f32) as usize;
             let phi = math::fract(math::atan2(s.wi.y, s.wi.x) / TAU + 1.0);
             row.min(THETA_BINS - 1) * PHI_BINS + ((phi * PHI_BINS as f32) as usize).min(PHI_BINS - 1)
@@ -116,6 +117,27 @@ fn glass_from_both_sides() {
                 let name = format!("glass of index {ior}, α {alpha}, compensated {compensated}");
                 assert_sampled_as_promised(&name, &glass(ior, alpha, compensated), &[0.9, 0.2, -0.95, -0.4]);
             }
+        }
+    }
+}
+
+#[test]
+fn plastics() {
+    for ior in [1.1, 1.5, 2.4] {
+        for alpha in [0.0, 0.06, 0.2, 1.0] {
+            let name = format!("plastic of index {ior}, α {alpha}");
+            let bsdf = plastic(Rgb::new(0.9, 0.4, 0.1), ior, alpha);
+            assert_sampled_as_promised(&name, &bsdf, &[1.0, 0.6, 0.1, -0.3]);
+        }
+    }
+}
+
+#[test]
+fn all_parts_of_the_layered_model() {
+    for (roughness, clearcoat_roughness) in [(0.5, 0.0), (0.35, 0.8), (0.0, 0.6)] {
+        for (name, parameters) in principled_zoo(roughness, clearcoat_roughness) {
+            let name = format!("{name} of roughness {roughness}, coat {clearcoat_roughness}");
+            assert_sampled_as_promised(&name, &principled(parameters), &[0.8, -0.2]);
         }
     }
 }

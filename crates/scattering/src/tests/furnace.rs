@@ -5,7 +5,7 @@ use radiometry::{SampleStream, StageKey};
 const KEY: StageKey = StageKey::new("furnace");
 
 /// Share of light that is scattered at all: the mean weight of flux, over `side`³ points jittered in all three numbers.
-fn scattered(bsdf: Bsdf, wo: Vec3, side: usize) -> f32 {
+pub(super) fn scattered(bsdf: Bsdf, wo: Vec3, side: usize) -> f32 {
     let mut numbers = Numbers(21 << 40);
     let mut sum = 0.0_f64;
     for i in 0..side * side * side {

@@ -2,10 +2,14 @@
 
 mod chi_square;
 mod furnace;
+mod layered;
 mod reciprocity;
 mod robustness;
 
-use crate::{Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, Microsurface};
+use crate::{
+    Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, Microsurface, PlasticBsdf, PrincipledBsdf,
+    PrincipledParameters,
+};
 use glam::{Vec2, Vec3};
 use radiometry::{Rgb, hash_u64, math};
 
@@ -37,6 +41,58 @@ fn metal(reflectance: f32, alpha: f32, compensated: bool) -> Bsdf {
 
 fn glass(ior: f32, alpha: f32, compensated: bool) -> Bsdf {
     Bsdf::Dielectric(DielectricBsdf::new(ior, Rgb::WHITE, surface(alpha, compensated)))
+}
+
+fn plastic(albedo: Rgb, ior: f32, alpha: f32) -> Bsdf {
+    Bsdf::Plastic(PlasticBsdf::new(albedo, ior, surface(alpha, true)))
+}
+
+fn principled(parameters: PrincipledParameters) -> Bsdf {
+    Bsdf::Principled(PrincipledBsdf::new(&parameters, SPECULAR_ALPHA))
+}
+
+/// One of each part of the layered model, and mixtures of them, in colour.
+fn principled_zoo(roughness: f32, clearcoat_roughness: f32) -> Vec<(&'static str, PrincipledParameters)> {
+    let plain = PrincipledParameters {
+        base_color: Rgb::new(0.9, 0.5, 0.2),
+        roughness,
+        clearcoat_roughness,
+        ..PrincipledParameters::default()
+    };
+    let metal = PrincipledParameters { metallic: 1.0, ..plain };
+    let wall = PrincipledParameters {
+        transmission: 1.0,
+        ..plain
+    };
+    let solid = PrincipledParameters { solid: true, ..wall };
+    let sheen = PrincipledParameters {
+        sheen: Rgb::new(0.8, 0.6, 0.9),
+        sheen_roughness: 0.4,
+        ..plain
+    };
+    let coated = |p: PrincipledParameters| PrincipledParameters { clearcoat: 1.0, ..p };
+    let mixed = |p: PrincipledParameters| PrincipledParameters {
+        metallic: 0.3,
+        transmission: 0.6,
+        clearcoat: 0.5,
+        specular: 0.7,
+        specular_color: Rgb::new(1.0, 2.0, 0.5),
+        ..p
+    };
+    vec![
+        ("opaque", plain),
+        ("metal", metal),
+        ("wall", wall),
+        ("solid", solid),
+        ("cloth", sheen),
+        ("coated opaque", coated(plain)),
+        ("coated metal", coated(metal)),
+        ("coated wall", coated(wall)),
+        ("coated solid", coated(solid)),
+        ("mixed wall", mixed(wall)),
+        ("mixed solid", mixed(solid)),
+        ("mixed cloth", mixed(sheen)),
+    ]
 }
 
 /// A direction by the cosine of its polar angle, at an azimuth that no symmetry favours.

@@ -62,6 +62,27 @@ fn flux_through_glass_is_the_adjoint_of_radiance() {
 }
 
 #[test]
+fn plastics_are_reciprocal() {
+    for ior in [1.2, 2.4] {
+        for alpha in [0.0, 0.1, 1.0] {
+            assert_reciprocal("plastic", &plastic(Rgb::new(0.9, 0.5, 0.1), ior, alpha));
+        }
+    }
+}
+
+#[test]
+fn all_parts_of_the_layered_model_are_reciprocal() {
+    for (roughness, clearcoat_roughness) in [(0.5, 0.3), (0.35, 1.0), (0.9, 0.0)] {
+        for (name, parameters) in principled_zoo(roughness, clearcoat_roughness) {
+            // A smooth coat of glass leaves nothing to evaluate.
+            if principled(parameters).needs_light_sampling() {
+                assert_reciprocal(name, &principled(parameters));
+            }
+        }
+    }
+}
+
+#[test]
 fn smooth_refraction_is_reversible_and_carries_the_square_of_eta() {
     let bsdf = glass(1.5, 0.0, false);
     let wo = direction(0.6);

@@ -157,7 +157,7 @@ pub(crate) struct Combined<T> {
 }
 
 /// What is odd about an edit of a list.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum EditTrouble {
     IdleDelete,
     Dropped,

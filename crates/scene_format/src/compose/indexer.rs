@@ -28,6 +28,13 @@ pub(crate) struct Composer<'l, 'a, 'r> {
     pub(crate) work: usize,
 }
 
+impl Composer<'_, '_, '_> {
+    /// Whether the prim in work takes more than a scene may need.
+    pub(crate) fn is_exhausted(&self) -> bool {
+        self.nodes > self.library.limits.index_nodes || self.work > MOST_WORK
+    }
+}
+
 /// The tree around the one that is built for an arc's target.
 pub(crate) struct Frame<'f> {
     /// What the arc targets; the tree begins above it in the namespace and grows towards it.
@@ -169,7 +176,7 @@ fn child_graph(
 impl Indexer<'_> {
     fn run(&mut self, composer: &mut Composer<'_, '_, '_>) {
         loop {
-            if composer.nodes > composer.library.limits.index_nodes || composer.work > MOST_WORK {
+            if composer.is_exhausted() {
                 return self.report_size(composer);
             }
             let tasks = &mut self.tasks;

@@ -3,12 +3,14 @@
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use super::mapping::TimeMap;
 use super::paths::{PathId, PathTable};
-use super::spec::{AssetRef, FlatLayer, Flattener, Spec};
+use super::spec::{AssetRef, FlatLayer, Flattener, Selection, Spec};
 use crate::asset::{self, Folders};
 use crate::diagnostic::{Diagnostic, Report};
+use crate::model::{ModelFile, ModelLimits, is_model, translate_model};
 use crate::options::Limits;
 use crate::read::read_layer;
 use crate::schema::Schema;
@@ -74,6 +76,10 @@ pub(crate) struct Library<'a, 'r> {
     /// Which file a text means that is written in another.
     named: HashMap<(SourceId, Box<str>), FileId>,
     opinions: usize,
+    /// Time spent on reading files so far.
+    pub(crate) reading: Duration,
+    /// What the command line selects, by prim.
+    pub(crate) session_selections: HashMap<PathId, Vec<Selection>>,
 }
 
 impl<'a, 'r> Library<'a, 'r> {
@@ -92,6 +98,8 @@ impl<'a, 'r> Library<'a, 'r> {
             stack_of: BTreeMap::new(),
             named: HashMap::new(),
             opinions: 0,
+            reading: Duration::ZERO,
+            session_selections: HashMap::new(),
         }
     }
 
@@ -123,9 +131,11 @@ impl<'a, 'r> Library<'a, 'r> {
 
     /// Takes a text for a file; what is wrong with it is reported.
     pub(crate) fn add_text(&mut self, source: SourceId, canonical: Option<PathBuf>) -> Option<LayerId> {
+        let begun = Instant::now();
         let report = RefCell::new(std::mem::take(&mut self.report));
         let layer = read_layer(&self.sources, source, self.schema, self.limits, &report);
         self.report = report.into_inner();
+        self.reading += begun.elapsed();
         let id = layer.map(|layer| {
             let mut flattener = Flattener {
                 paths: &mut self.paths,
@@ -230,20 +240,73 @@ impl<'a, 'r> Library<'a, 'r> {
 
     fn read_file(&mut self, path: &Path, written: &str, reached: Reached) -> Result<SourceId, Diagnostic> {
         let name = self.sources.shown_beside(reached.place.source, written);
-        let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        match asset::read_text(path, self.limits) {
-            Ok(text) => Ok(self.sources.add_file(&name, &folder, text, Some(reached))),
+        self.add_source(path, &name, Some(reached))
+            .map_err(|error| match error.place {
+                Some(_) => error,
+                None => error.at(reached.place),
+            })
+    }
+
+    /// Reads a file as text; a model is translated.
+    ///
+    /// - `path`: canonical.
+    /// - `name`: what people know the file by.
+    ///
+    /// # Errors
+    ///
+    /// A file that is unreadable, too large, no text, or a broken model.
+    pub(crate) fn add_source(
+        &mut self,
+        path: &Path,
+        name: &str,
+        reached: Option<Reached>,
+    ) -> Result<SourceId, Diagnostic> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        if is_model(path) {
+            let begun = Instant::now();
+            let text = self.translate(path, name, reached)?;
+            self.reading += begun.elapsed();
+            return Ok(self.sources.add_model(name, folder, text, reached));
+        }
+        match asset::read_text(path, name, self.limits) {
+            Ok(text) => Ok(self.sources.add_file(name, folder, text, reached)),
             Err((error, text)) if error.code == "not-utf-8" => {
                 let end = text.len() as u32;
-                let source = self.sources.add_file(&name, &folder, text, Some(reached));
+                let source = self.sources.add_file(name, folder, text, reached);
                 Err(error.at(Place {
                     source,
                     start: end,
                     end,
                 }))
             }
-            Err((error, _)) => Err(error.at(reached.place)),
+            Err((error, _)) => Err(error),
         }
+    }
+
+    fn translate(&mut self, path: &Path, name: &str, reached: Option<Reached>) -> Result<String, Diagnostic> {
+        let limits = ModelLimits::of(self.limits);
+        let bytes = asset::read_bytes(path, name, limits.bytes)?;
+        let file = ModelFile {
+            name,
+            path,
+            root: &self.folders.root,
+            bytes: &bytes,
+        };
+        let model = translate_model(&file, self.schema, &limits)
+            .map_err(|error| Diagnostic::error(error.code(), error.to_string()))?;
+        for warning in &model.warnings {
+            let warning = Diagnostic::warning("odd-model", format!("{name}: {warning}"));
+            self.report.push_once(match reached {
+                Some(reached) => warning.at(reached.place),
+                None => warning,
+            });
+        }
+        Ok(model.text)
+    }
+
+    /// How many files and fields there are, the command line's included.
+    pub(crate) fn counts(&self) -> (usize, usize) {
+        (self.layers.len(), self.opinions)
     }
 
     /// Whether every file that was asked for could be read.
@@ -264,8 +327,10 @@ impl<'a, 'r> Library<'a, 'r> {
 
     /// Makes the stack of a scene: that of its file, with the command line's layer above it.
     pub(crate) fn build_stack(&mut self, layer: LayerId, session: Option<LayerId>) -> StackId {
-        let mut layers: Vec<(LayerId, TimeMap)> =
-            session.into_iter().map(|session| (session, TimeMap::IDENTITY)).collect();
+        let mut layers: Vec<(LayerId, TimeMap)> = session
+            .into_iter()
+            .map(|session| (session, TimeMap::IDENTITY))
+            .collect();
         self.add_sublayers(layer, TimeMap::IDENTITY, &mut Vec::new(), &mut layers);
         let mut heads = HashMap::new();
         let mut links = Vec::new();
@@ -292,7 +357,10 @@ impl<'a, 'r> Library<'a, 'r> {
         layers.push((layer, time));
         for asset in self.layer(layer).sublayers.clone() {
             if layers.len() >= self.limits.layers {
-                let message = format!("a file has at most {} sublayers, all levels together", self.limits.layers);
+                let message = format!(
+                    "a file has at most {} sublayers, all levels together",
+                    self.limits.layers
+                );
                 let error = Diagnostic::error("too-many-layers", message);
                 return self.report.push_once(error.at(asset.place));
             }

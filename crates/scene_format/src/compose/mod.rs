@@ -14,6 +14,7 @@ mod checks;
 mod children;
 mod classes;
 mod graph;
+mod idle_variants;
 mod indexer;
 mod library;
 mod mapping;
@@ -73,10 +74,7 @@ pub(crate) fn compose(library: &mut Library<'_, '_>, stack: StackId, load_payloa
             report_size(library, composed.prims.len());
             break;
         }
-        let site = Site {
-            stack,
-            path: next.path,
-        };
+        let site = Site { stack, path: next.path };
         let mut composer = Composer {
             library: &mut *library,
             load_payloads,
@@ -84,9 +82,14 @@ pub(crate) fn compose(library: &mut Library<'_, '_>, stack: StackId, load_payloa
             work: 0,
         };
         let graph = build_graph(&mut composer, site, BuildOptions::WHOLE, Some(&next.above), None);
+        if composer.is_exhausted() {
+            // It was reported; the other prims would take as long.
+            break;
+        }
         checks::check_graph(library, &graph);
         let above = next.parent.is_none_or(|parent| composed.prims[parent].rendered);
         let prim = resolver.resolve(library, &graph, next.parent, above);
+        idle_variants::warn_of_idle_variants(library, &graph, &prim);
         let position = composed.prims.len();
         let is_active = prim.active;
         composed.index.insert(prim.path.clone(), position);
@@ -122,7 +125,10 @@ fn report_size(library: &mut Library<'_, '_>, prims: usize) {
     let error = if prims >= limits.prims {
         Diagnostic::error("too-many-prims", format!("a scene has at most {} prims", limits.prims))
     } else {
-        let message = format!("the prims of a scene have at most {} opinions, counted anew wherever an arc brings them", limits.opinions);
+        let message = format!(
+            "the prims of a scene have at most {} opinions, counted anew wherever an arc brings them",
+            limits.opinions
+        );
         Diagnostic::error("too-many-opinions", message)
     };
     library.report.push_once(error);

@@ -109,10 +109,12 @@ impl PathTable {
 
     /// Gives the number of an absolute path without variants, whose names are fine.
     pub(crate) fn intern(&mut self, text: &str) -> PathId {
-        text.split('/').filter(|name| !name.is_empty()).fold(PathId::ROOT, |path, name| {
-            let name = self.word(name);
-            self.child(path, name)
-        })
+        text.split('/')
+            .filter(|name| !name.is_empty())
+            .fold(PathId::ROOT, |path, name| {
+                let name = self.word(name);
+                self.child(path, name)
+            })
     }
 
     /// Finds a path without variants, if it was ever named.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::arcs::combine;
+use super::arcs::{EditTrouble, combine};
 use super::checks::variants_of;
 use super::graph::{ArcKind, Graph, NodeId};
 use super::library::{LayerId, Library};
@@ -321,7 +321,7 @@ impl Resolving<'_, '_, '_, '_> {
         let state = match field.kind {
             FieldKind::Value => self.value(places[0]),
             FieldKind::Target { .. } | FieldKind::Targets { .. } => {
-                let targets = self.combine_targets(places);
+                let targets = self.combine_targets(field.kind, places);
                 self.relationship(component, field, targets, place)
             }
         };
@@ -360,7 +360,7 @@ impl Resolving<'_, '_, '_, '_> {
     }
 
     /// Combines lists of targets, each item carried to the scene's namespace; none if blocked.
-    fn combine_targets(&mut self, places: &[FieldPlace]) -> Option<Vec<Spanned<String>>> {
+    fn combine_targets(&mut self, kind: FieldKind, places: &[FieldPlace]) -> Option<Vec<Spanned<String>>> {
         let mut edits = Vec::new();
         for &place in places {
             match &self.field_spec(place).opinion {
@@ -377,7 +377,12 @@ impl Resolving<'_, '_, '_, '_> {
         }
         let key = |item: &CarriedTarget| item.image.clone().ok_or(item.written.place);
         let combined = combine(&edits, key);
+        let is_list = matches!(kind, FieldKind::Targets { .. });
         for (place, trouble) in combined.without_effect(|item| item.written.place) {
+            // To point somewhere else is what a stronger opinion about one target is for.
+            if !is_list && trouble == EditTrouble::Dropped {
+                continue;
+            }
             let name = self.library.sources.text(place).to_owned();
             self.library.report.push_once(trouble.warning(&name).at(place));
         }

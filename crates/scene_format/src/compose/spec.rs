@@ -5,7 +5,9 @@ use std::collections::HashMap;
 use super::mapping::TimeMap;
 use super::paths::{PathId, PathTable, Step, Word};
 use crate::diagnostic::{Diagnostic, Report};
-use crate::layer::{AssetArc, Body, ComponentSpec, FieldOpinion, Layer, ListEdit, PrimSpec, Spanned, Specifier, TimeSettings};
+use crate::layer::{
+    AssetArc, Body, ComponentSpec, FieldOpinion, Layer, ListEdit, PrimSpec, Spanned, Specifier, TimeSettings,
+};
 use crate::options::Limits;
 use crate::path::{absolute_path_problem, resolve_target};
 use crate::schema::Schema;
@@ -210,7 +212,11 @@ impl Flattener<'_, '_> {
         }
         for set in sets {
             let set_word = self.paths.word(&set.name.value);
-            let variants = set.variants.iter().map(|(name, _)| self.paths.word(&name.value)).collect();
+            let variants = set
+                .variants
+                .iter()
+                .map(|(name, _)| self.paths.word(&name.value))
+                .collect();
             arcs.get_or_insert_default().sets.push(SetSpec {
                 name: set_word,
                 variants,
@@ -260,13 +266,15 @@ impl Flattener<'_, '_> {
     }
 
     fn classes(&mut self, edit: &ListEdit<Spanned<String>>, owner: &str) -> ListEdit<Spanned<PathId>> {
-        edit.filter_map(|item| match resolve_target(&item.value, owner, self.limits.name_bytes) {
-            Ok(path) => Some(Spanned {
-                value: self.paths.intern(&path),
-                place: item.place,
-            }),
-            Err(problem) => self.fail("bad-path", problem, item.place),
-        })
+        edit.filter_map(
+            |item| match resolve_target(&item.value, owner, self.limits.name_bytes) {
+                Ok(path) => Some(Spanned {
+                    value: self.paths.intern(&path),
+                    place: item.place,
+                }),
+                Err(problem) => self.fail("bad-path", problem, item.place),
+            },
+        )
     }
 
     fn fail<T>(&mut self, code: &'static str, problem: String, place: Place) -> Option<T> {
@@ -312,7 +320,10 @@ impl Flattener<'_, '_> {
     }
 
     fn order(&mut self, names: &[Spanned<String>]) -> Vec<(Word, Place)> {
-        names.iter().map(|name| (self.paths.word(&name.value), name.place)).collect()
+        names
+            .iter()
+            .map(|name| (self.paths.word(&name.value), name.place))
+            .collect()
     }
 
     fn make_targets_absolute(&mut self, components: &mut [ComponentSpec], owner: PathId) {
@@ -320,13 +331,15 @@ impl Flattener<'_, '_> {
         for field in components.iter_mut().flat_map(|component| &mut component.fields) {
             if let FieldOpinion::Targets(edit) = &mut field.opinion {
                 let owner = owner_text.get_or_insert_with(|| self.paths.text(owner));
-                *edit = edit.filter_map(|item| match resolve_target(&item.value, owner, self.limits.name_bytes) {
-                    Ok(value) => Some(Spanned {
-                        value,
-                        place: item.place,
-                    }),
-                    Err(problem) => self.fail("bad-path", problem, item.place),
-                });
+                *edit = edit.filter_map(
+                    |item| match resolve_target(&item.value, owner, self.limits.name_bytes) {
+                        Ok(value) => Some(Spanned {
+                            value,
+                            place: item.place,
+                        }),
+                        Err(problem) => self.fail("bad-path", problem, item.place),
+                    },
+                );
             }
         }
     }

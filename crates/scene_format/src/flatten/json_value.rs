@@ -14,7 +14,9 @@ pub(super) fn json_value(value: &dyn PartialReflect) -> Value {
     }
     match value.reflect_ref() {
         ReflectRef::Struct(parts) => {
-            let fields = parts.iter_fields().map(|(name, part)| (name.to_owned(), json_value(part)));
+            let fields = parts
+                .iter_fields()
+                .map(|(name, part)| (name.to_owned(), json_value(part)));
             Value::Object(fields.collect::<Map<_, _>>())
         }
         ReflectRef::TupleStruct(parts) => match parts.field_len() {
@@ -24,7 +26,10 @@ pub(super) fn json_value(value: &dyn PartialReflect) -> Value {
         ReflectRef::Tuple(parts) => parts.iter_fields().map(json_value).collect(),
         ReflectRef::List(parts) => parts.iter().map(json_value).collect(),
         ReflectRef::Array(parts) => parts.iter().map(json_value).collect(),
-        ReflectRef::Map(parts) => parts.iter().map(|(key, part)| json!([json_value(key), json_value(part)])).collect(),
+        ReflectRef::Map(parts) => parts
+            .iter()
+            .map(|(key, part)| json!([json_value(key), json_value(part)]))
+            .collect(),
         ReflectRef::Set(parts) => parts.iter().map(json_value).collect(),
         ReflectRef::Enum(parts) => enum_value(parts),
         _ => Value::String(format!("{value:?}")),

@@ -18,7 +18,11 @@ pub fn flatten_ron(scene: &Scene) -> String {
         asset: &|path| relative(path, &folder),
     };
     if let Some(path) = &scene.default_prim {
-        let _ = writeln!(writer.text, "    default_prim: {},", quoted(path.trim_start_matches('/')));
+        let _ = writeln!(
+            writer.text,
+            "    default_prim: {},",
+            quoted(path.trim_start_matches('/'))
+        );
     }
     if scene.time != TimeSettings::default() {
         let TimeSettings { start, end, fps } = scene.time;
@@ -114,7 +118,9 @@ impl Writer<'_> {
                 let text = match &field.state {
                     FieldState::Constant(constant) => value(&**constant),
                     FieldState::Samples(samples) => {
-                        let list = samples.iter().map(|(time, sample)| format!("{time}: {}", value(&**sample)));
+                        let list = samples
+                            .iter()
+                            .map(|(time, sample)| format!("{time}: {}", value(&**sample)));
                         format!("Samples({{{}}})", list.collect::<Vec<_>>().join(", "))
                     }
                     // Nothing is weaker here that would have to be hidden.

@@ -15,7 +15,9 @@ pub(crate) fn ron_value(value: &dyn PartialReflect, asset: &dyn Fn(&str) -> Stri
     }
     match value.reflect_ref() {
         ReflectRef::Struct(parts) => {
-            let fields = parts.iter_fields().map(|(name, part)| format!("{name}: {}", each(part)));
+            let fields = parts
+                .iter_fields()
+                .map(|(name, part)| format!("{name}: {}", each(part)));
             format!("({})", join(fields))
         }
         ReflectRef::TupleStruct(parts) => format!("({})", join(parts.iter_fields().map(each))),

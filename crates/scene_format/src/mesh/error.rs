@@ -43,12 +43,12 @@ pub enum MeshError {
         file: String,
     },
     /// Nothing but faces without area.
-    #[error("{file} has no face with an area; the first of them is on line {line}")]
+    #[error("{file} has no face with an area; the first {first}")]
     OnlyDegenerate {
         /// The file.
         file: String,
-        /// From 1.
-        line: usize,
+        /// The first of them.
+        first: MeshPlace,
     },
     /// A line that cannot be read.
     #[error("{file}:{line}: {problem}")]
@@ -67,14 +67,6 @@ pub enum MeshError {
         file: String,
         /// In the units of the file.
         limit: f64,
-    },
-    /// `tobj` refuses what was checked before.
-    #[error("{file} cannot be read: {reason}")]
-    Reader {
-        /// The file.
-        file: String,
-        /// What `tobj` says.
-        reason: String,
     },
 }
 
@@ -118,13 +110,38 @@ pub struct MeshWarning {
     pub oddity: Oddity,
     /// How often.
     pub count: usize,
-    /// The first line, from 1.
-    pub line: usize,
+    /// Where first.
+    pub first: MeshPlace,
+}
+
+/// A place in the file of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshPlace {
+    /// A line of a text, from 1.
+    Line(usize),
+    /// A triangle of a primitive, from 0.
+    Triangle(usize),
+    /// A vertex of a primitive, from 0.
+    Vertex(usize),
+    /// A primitive of a mesh, from 0.
+    Primitive(usize),
+}
+
+impl fmt::Display for MeshPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "on line {line}"),
+            Self::Triangle(triangle) => write!(f, "is triangle {triangle}"),
+            Self::Vertex(vertex) => write!(f, "is vertex {vertex}"),
+            Self::Primitive(primitive) => write!(f, "is primitive {primitive}"),
+        }
+    }
 }
 
 impl fmt::Display for MeshWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { count, line, .. } = self;
+        let Self { count, first, .. } = self;
         let (one, many, effect) = match self.oddity {
             Oddity::DegenerateTriangle => ("triangle has", "triangles have", "no area, left out"),
             Oddity::FewCorners => ("face has", "faces have", "fewer than three corners, left out"),
@@ -133,6 +150,6 @@ impl fmt::Display for MeshWarning {
             Oddity::PartialUvs => ("face has", "faces have", "no texture coordinates, so none are used"),
         };
         let what = if *count == 1 { one } else { many };
-        write!(f, "{count} {what} {effect}; the first on line {line}")
+        write!(f, "{count} {what} {effect}; the first {first}")
     }
 }

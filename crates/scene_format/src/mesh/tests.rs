@@ -1,13 +1,14 @@
 //! Meshes that are right, odd and wrong.
 
 use super::*;
+use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 
-fn parse(text: &str) -> Result<ObjMesh, MeshError> {
+fn parse(text: &str) -> Result<MeshData, MeshError> {
     parse_obj("a.obj", text.as_bytes(), &MeshLimits::default())
 }
 
-fn mesh(text: &str) -> ObjMesh {
+fn mesh(text: &str) -> MeshData {
     parse(text).unwrap()
 }
 
@@ -15,7 +16,7 @@ fn error(text: &str) -> String {
     parse(text).unwrap_err().to_string()
 }
 
-fn warnings(mesh: &ObjMesh) -> Vec<String> {
+fn warnings(mesh: &MeshData) -> Vec<String> {
     mesh.warnings.iter().map(ToString::to_string).collect()
 }
 
@@ -87,7 +88,7 @@ fn triangles_without_area_are_left_out() {
     );
     assert_eq!(
         error(&format!("{SQUARE}f 1 1 2\n")),
-        "a.obj has no face with an area; the first of them is on line 5"
+        "a.obj has no face with an area; the first on line 5"
     );
     // Small is not flat.
     assert_eq!(mesh("v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nf 1 2 3\n").triangles.len(), 1);
@@ -103,6 +104,7 @@ fn errors_have_lines() {
         ("v 1 1 1e999\n", "a.obj:1: `1e999` is not a finite number"),
         ("v 1 1 1 0\n", "a.obj:1: the weight 0 of this position is too small"),
         ("vt\n", "a.obj:1: expected 1 number, found 0"),
+        ("vt 0 1e39\n", "a.obj:1: a texture coordinate is at most 3.4e38"),
         ("vn 1 2\n", "a.obj:1: expected 3 numbers, found 2"),
         ("v 0 0 0\nf 1 2 3\n", "a.obj:2: there is no position 2, the file has 1"),
         (
@@ -192,7 +194,7 @@ fn files_from_the_wild() {
 }
 
 /// Every index points to something, everything is finite.
-fn check(found: &ObjMesh) {
+fn check(found: &MeshData) {
     let count = found.positions.len();
     assert!(
         found

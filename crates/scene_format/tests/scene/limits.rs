@@ -30,6 +30,7 @@ fn each_limit_is_an_error() {
         samples: 2,
         variants: 2,
         name_bytes: 4,
+        ..Limits::default()
     };
     let code = |text: &str| code_with(text, least());
     assert_eq!(

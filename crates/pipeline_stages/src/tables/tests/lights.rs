@@ -33,6 +33,23 @@ fn each_prim_that_shares_a_mesh_has_its_power() {
 }
 
 #[test]
+fn a_material_that_emits_makes_its_geometry_shine() {
+    let app = with_rest(
+        "\"/Glow\": Def(Principled: (emission: (1, 2, 3))),\n\
+         \"/A\": Def(Sphere: (), MaterialBinding: (target: \"/Glow\")),\n\
+         \"/B\": Def(Sphere: (), MaterialBinding: (target: \"/Glow\"), Emission: (radiance: (5, 5, 5)), Transform: (translate: (5, 0, 0))),\n\
+         \"/C\": Def(Sphere: (), Principled: (), Transform: (translate: (10, 0, 0))),\n",
+    );
+    assert_eq!(seen_at(&app, 0.0, 0.0).1, Rgb::new(1.0, 2.0, 3.0));
+    assert_eq!(seen_at(&app, 5.0, 0.0).1, Rgb::splat(5.0));
+    assert_eq!(seen_at(&app, 10.0, 0.0).1, Rgb::BLACK);
+    assert!(seen_at(&app, 0.0, 0.0).0.bsdf.has_diffuse());
+    // It is light enough for a scene without another.
+    let lamp = "\"/A\": Def(Sphere: (), Principled: (emission: (1, 1, 1))),\n";
+    assert_eq!(errors(&prepare(&[lamp, CAMERA, RENDER])), "");
+}
+
+#[test]
 fn point_lights_shine_all_around() {
     let power = |light: &str| {
         let lamp = format!("\"/Lamp\": Def(PointLight: ({light}), Transform: (translate: (0, 3, 0))),\n");

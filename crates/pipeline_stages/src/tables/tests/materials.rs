@@ -58,6 +58,44 @@ fn materials_become_the_bsdfs_that_they_describe() {
 }
 
 #[test]
+fn layered_materials_become_their_bsdfs() {
+    let look = |material: &str| seen_at(&with_rest(&format!("\"/A\": Def(Sphere: (), {material}),\n")), 0.0, 0.0).0;
+    let plastic = look("Plastic: (albedo: (1, 0, 0))");
+    assert!(plastic.bsdf.has_specular() && plastic.bsdf.has_diffuse() && !plastic.bsdf.transmits());
+    // Head-on, 4 % of the coat and what the base returns.
+    let albedo = plastic.bsdf.albedo(Vec3::Z);
+    assert!(
+        (albedo.r - 1.0).abs() < 5e-3 && (albedo.g - 0.04).abs() < 5e-3,
+        "{albedo:?}"
+    );
+    assert!(look("Plastic: (roughness: 0.5)").bsdf.has_diffuse());
+
+    let metal = look("Principled: (metallic: 1, roughness: 0.1, base_color: (0.9, 0.6, 0.3))");
+    assert!(metal.bsdf.has_specular() && !metal.bsdf.has_diffuse() && !metal.bsdf.transmits());
+    let wall = look("Principled: (transmission: 1, roughness: 0)");
+    assert!(wall.bsdf.transmits() && !wall.bsdf.has_inside() && !wall.bsdf.needs_light_sampling());
+    let solid = look(
+        "Principled: (transmission: 1, thickness: 0.1, attenuation_color: (0.5, 1, 0.25), attenuation_distance: 0.5)",
+    );
+    assert!(solid.bsdf.has_inside());
+    let ln2 = std::f32::consts::LN_2;
+    assert!(
+        (solid.absorption.r - 2.0 * ln2).abs() < 1e-5 && solid.absorption.g == 0.0,
+        "{solid:?}"
+    );
+    assert!((solid.absorption.b - 4.0 * ln2).abs() < 1e-5, "{solid:?}");
+    assert_eq!(
+        look("Principled: (attenuation_color: (0, 0, 0), attenuation_distance: 1)").absorption,
+        Rgb::BLACK
+    );
+    assert!(
+        look("Principled: (sheen: (1, 1, 1), metallic: 1, roughness: 0)")
+            .bsdf
+            .has_diffuse()
+    );
+}
+
+#[test]
 fn the_threshold_of_light_transport_decides_what_is_specular() {
     let render = "\"/Render\": Def(Render: (camera: \"/Camera\"), LightTransport: (specular_alpha: 0.5)),\n";
     let app = prepare(&[
@@ -96,6 +134,18 @@ fn materials_that_cannot_be_are_refused_with_their_place() {
         (
             "\"/A\": Def(Sphere: (), Dielectric: (dispersion: 30)),\n",
             "error[not-supported-yet]: `Dielectric.dispersion`",
+        ),
+        (
+            "\"/A\": Def(Sphere: (), Plastic: (), Principled: ()),\n",
+            "error[two-materials]: `/A`",
+        ),
+        (
+            "\"/A\": Def(Sphere: (), Principled: (alpha: 0.5)),\n",
+            "error[not-supported-yet]: `Principled.alpha`",
+        ),
+        (
+            "\"/A\": Def(Quad: (), Principled: (transmission: 1, thickness: 0.1)),\n",
+            "write `Principled: (thickness: 0)`",
         ),
         (
             "\"/A\": Def(Quad: (), Dielectric: (thin: true, roughness: 0.5)),\n",

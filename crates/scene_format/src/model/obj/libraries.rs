@@ -1,0 +1,72 @@
+//! Finding and reading the material libraries of an OBJ file.
+
+use std::path::PathBuf;
+
+use super::super::error::ModelWarning;
+use super::super::files::{in_words, read_bytes, resolve_beside};
+use super::super::{ModelFile, ModelLimits};
+use super::mtl::Library;
+
+/// A file with more libraries than this is no model.
+const MOST_LIBRARIES: usize = 100;
+
+/// The material libraries that a file names. What cannot be read is a warning: the shapes are there all the same.
+#[derive(Default)]
+pub(super) struct Libraries {
+    pub(super) library: Library,
+    pub(super) files: Vec<PathBuf>,
+    pub(super) warnings: Vec<ModelWarning>,
+    /// How many were looked for.
+    count: usize,
+}
+
+impl Libraries {
+    /// Reads the libraries of one line: a name that may hold blanks, else several names.
+    pub(super) fn read(&mut self, names: &str, line: usize, file: &ModelFile<'_>, limits: &ModelLimits) {
+        let at = format!("line {line}");
+        if self.count < MOST_LIBRARIES && resolve_beside(names, file).is_ok() {
+            return self.read_one(names, &at, file, limits);
+        }
+        for name in names.split_whitespace() {
+            self.read_one(name, &at, file, limits);
+        }
+    }
+
+    fn read_one(&mut self, name: &str, at: &str, file: &ModelFile<'_>, limits: &ModelLimits) {
+        self.count += 1;
+        if self.count == MOST_LIBRARIES {
+            self.warn(
+                at,
+                format!("more than {MOST_LIBRARIES} libraries, so this and later ones are left out"),
+            );
+        }
+        if self.count >= MOST_LIBRARIES {
+            return;
+        }
+        let path = match resolve_beside(name, file) {
+            Ok(path) => path,
+            Err(problem) => return self.warn(at, format!("no materials: {}", in_words(&problem))),
+        };
+        if self.files.contains(&path) {
+            return;
+        }
+        let bytes = read_bytes(&path, limits.text_bytes as u64, at);
+        self.files.push(path);
+        match bytes.as_deref().map(std::str::from_utf8) {
+            Ok(Ok(text)) => {
+                for (line, problem) in self.library.read(text) {
+                    self.warn(&format!("{name}:{line}"), problem);
+                }
+            }
+            Ok(Err(_)) => self.warn(at, format!("no materials: `{name}` is not UTF-8 text")),
+            Err(_) => self.warn(at, format!("no materials: `{name}` cannot be read, or is too large")),
+        }
+    }
+
+    fn warn(&mut self, at: &str, message: String) {
+        self.warnings.push(ModelWarning {
+            at: at.to_owned(),
+            message,
+        });
+    }
+}

@@ -1,0 +1,111 @@
+//! Scenes of several layers: `flatten`, `explain`, variants, models.
+
+use crate::program::{BALLS, Folder};
+
+/// A shot over a layout; the ball's material is a variant.
+const SHOT: &str = r#"#![enable(implicit_some)]
+Layer(
+    sublayers: ["layout.ron"],
+    prims: {"/Mirror": Over(
+        select: {"metal": "gold"},
+        variants: {"metal": {
+            "gold": (Conductor: (metal: "gold", reflectance: Block)),
+            "copper": (Conductor: (metal: "copper", reflectance: Block)),
+        }},
+    )},
+)
+"#;
+
+fn shot() -> Folder {
+    let folder = Folder::with_scene(SHOT);
+    folder.write("layout.ron", BALLS);
+    folder
+}
+
+#[test]
+fn a_flat_scene_renders_the_same_picture() {
+    let folder = shot();
+    let flat = folder.succeed("flatten scene.ron");
+    assert!(flat.stdout.starts_with("#![enable(implicit_some)]\nLayer(\n"), "{}", flat.stdout);
+    folder.write("flat.ron", &flat.stdout);
+    assert_eq!(folder.succeed("flatten flat.ron").stdout, flat.stdout);
+    folder.succeed("run scene.ron -q -o a.exr");
+    folder.succeed("run flat.ron -q -o b.exr");
+    // Not the scene's name, only its hash is in the file.
+    assert!(folder.bytes("a.exr") == folder.bytes("b.exr"), "the same scene, the same bits");
+}
+
+#[test]
+fn a_variant_changes_the_picture_and_a_camera_can_be_set() {
+    let folder = shot();
+    folder.succeed("run scene.ron -q -o gold.exr");
+    folder.succeed("run scene.ron -q -o copper.exr --variant /Mirror{metal=copper}");
+    folder.succeed("run scene.ron -q -o near.exr --set /Camera.Camera.fov=20");
+    let gold = folder.bytes("gold.exr");
+    assert!(gold != folder.bytes("copper.exr") && gold != folder.bytes("near.exr"));
+    let ran = folder.run("check scene.ron --variant /Mirror{metal=cooper}");
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.stderr.contains("did you mean `copper`?"), "{}", ran.stderr);
+}
+
+#[test]
+fn explain_tells_who_wins() {
+    let folder = shot();
+    let ran = folder.succeed("explain scene.ron /Mirror.reflectance");
+    insta::assert_snapshot!(ran.stdout, @r"
+    /Mirror.Conductor.reflectance = (0.9, 0.9, 0.9)
+      1  layout.ron:12  (0.9, 0.9, 0.9)  local                                              <- wins
+      2  scene.ron:7    Block            variants /Mirror{metal=gold} (from scene.ron:5)  weaker: local beats variants
+    ");
+    let ran = folder.run("explain scene.ron /Mirror.Conductor.reflectanse");
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.stderr.contains("did you mean `reflectance`?"), "{}", ran.stderr);
+}
+
+#[test]
+fn flatten_writes_json_for_tools() {
+    let folder = shot();
+    let json = folder.succeed("flatten --json scene.ron").stdout;
+    let answer: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(answer["status"], "ok");
+    assert_eq!(answer["prims"].as_array().unwrap().len(), 7);
+    let ran = folder.run("flatten --json scene.ron --set /Camera.fvo=3");
+    assert_eq!(ran.code, Some(2));
+    let answer: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!(answer["errors"][0]["code"], "unknown-field");
+}
+
+#[test]
+fn limits_can_be_changed() {
+    let folder = shot();
+    let ran = folder.run("check scene.ron --limit layers=1");
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.stderr.contains("too-many-layers"), "{}", ran.stderr);
+    let ran = folder.run("check scene.ron --limit layer=1");
+    assert!(ran.stderr.contains("index_nodes"), "{}", ran.stderr);
+}
+
+#[test]
+fn a_node_of_a_model_takes_another_material() {
+    let folder = Folder::with_scene(
+        r#"#![enable(implicit_some)]
+Layer(prims: {
+    "/Camera": Def(Camera: (fov: 45), Transform: (translate: (0, 0, 4))),
+    "/Render": Def(Render: (camera: "/Camera", samples: 1), Film: (resolution: (16, 16)), LightTransport: (caustic: Trace)),
+    "/Sky": Def(EnvironmentLight: ()),
+    "/Red": Def(Diffuse: (albedo: (0.8, 0.1, 0.1))),
+    "/Model": Def(references: ["model.glb"]),
+})
+"#,
+    );
+    folder.write(
+        "model.glb",
+        include_bytes!("../../crates/scene_format/tests/data/gltf/Box.glb"),
+    );
+    let flat = folder.succeed("flatten scene.ron").stdout;
+    let node = "/Model/node_0/Mesh";
+    assert!(flat.contains("\"Mesh\""), "{flat}");
+    folder.succeed("run scene.ron -q -o a.exr");
+    folder.succeed(&format!("run scene.ron -q -o b.exr --set {node}.MaterialBinding.target=\"/Red\""));
+    assert!(folder.bytes("a.exr") != folder.bytes("b.exr"));
+}
