@@ -176,11 +176,6 @@ impl Graph {
         std::iter::successors(Some(node), |&node| self.parent(node))
     }
 
-    /// Whether `node` is `top` or hangs below it.
-    pub(crate) fn is_below(&self, node: NodeId, top: NodeId) -> bool {
-        self.up(node).any(|above| above == top)
-    }
-
     /// Gives the node itself; of a base that was moved, the placeholder where its arc is.
     fn written_at(&self, node: NodeId) -> NodeId {
         if self.is_moved_base(node) {
@@ -351,12 +346,16 @@ impl Graph {
     fn insert_in_order(&mut self, new: NodeId, paths: &PathTable) {
         let parent = self.node(new).parent;
         let siblings = &self.node(parent).children;
-        // The order of bases is not always transitive, so it matters what is asked first.
         let stronger = |other: &NodeId| self.is_stronger(new, *other, paths);
-        let at = match (siblings.first(), siblings.last()) {
-            (Some(first), _) if stronger(first) => 0,
-            (_, Some(last)) if stronger(last) => siblings.iter().position(stronger).unwrap_or(siblings.len()),
-            _ => siblings.len(),
+        let at = if self.node(new).kind == ArcKind::Specializes {
+            // The order of bases is not always transitive, so it matters what is asked first.
+            match (siblings.first(), siblings.last()) {
+                (Some(first), _) if stronger(first) => 0,
+                (_, Some(last)) if stronger(last) => siblings.iter().position(stronger).unwrap_or(siblings.len()),
+                _ => siblings.len(),
+            }
+        } else {
+            siblings.partition_point(|other| !stronger(other))
         };
         self.node_mut(parent).children.insert(at, new);
     }

@@ -1,6 +1,6 @@
 //! Builds the tree of one prim: the work list of LIVRPS.
 //!
-//! The algorithm is that of OpenUSD's prim indexing, so that ties fall as they do there: the tree of
+//! The algorithm is that of `OpenUSD`'s prim indexing, so that ties fall as they do there: the tree of
 //! the parent with one more name, then arcs in the order references, payloads, inherits, specializes,
 //! bases to be moved, implied classes, variants. Each new node brings tasks of its own.
 
@@ -522,13 +522,23 @@ fn take_first_implied(
     graph: &Graph,
     tasks: &mut BTreeSet<NodeId>,
 ) -> Option<NodeId> {
-    composer.work += tasks.len();
-    let first = tasks
-        .iter()
-        .copied()
-        .min_by(|&a, &b| graph.compare_children_first(a, b))?;
-    tasks.remove(&first);
-    Some(first)
+    if tasks.len() < 2 {
+        return tasks.pop_first();
+    }
+    let mut waiting = vec![(NodeId::ROOT, false)];
+    while let Some((node, below_done)) = waiting.pop() {
+        composer.work += 1;
+        if below_done {
+            if tasks.remove(&node) {
+                return Some(node);
+            }
+            continue;
+        }
+        waiting.push((node, true));
+        let children = graph.node(node).children.iter().rev();
+        waiting.extend(children.map(|&child| (child, false)));
+    }
+    None
 }
 
 /// Takes the task of the strongest node; of one node the set written furthest up, and the first there.

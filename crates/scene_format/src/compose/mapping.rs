@@ -39,7 +39,7 @@ type Pair = (Option<PathId>, Option<PathId>);
 ///
 /// Of the pairs whose source begins a path, the longest counts. A path whose image lies below the
 /// target of a longer pair has no image, since that part of the target belongs to another source:
-/// the map can be undone wherever it is defined. The rules are those of OpenUSD's map functions.
+/// the map can be undone wherever it is defined. The rules are those of `OpenUSD`'s map functions.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PathMap {
     pairs: Vec<Pair>,

@@ -1,6 +1,6 @@
 //! Which of two nodes is stronger.
 //!
-//! The order is that of OpenUSD's strength ordering; for the ties among bases, which are moved below
+//! The order is that of `OpenUSD`'s strength ordering; for the ties among bases, which are moved below
 //! the first node, see `bases.rs`.
 
 use std::cmp::Ordering;
@@ -57,15 +57,6 @@ impl Graph {
             }
             (None, _) => Ordering::Less,
             (_, None) => Ordering::Greater,
-        }
-    }
-
-    /// Compares like [`Self::compare_in_tree`], but children come before their parents.
-    pub(crate) fn compare_children_first(&self, a: NodeId, b: NodeId) -> Ordering {
-        if self.is_below(a, b) || self.is_below(b, a) {
-            self.compare_in_tree(b, a)
-        } else {
-            self.compare_in_tree(a, b)
         }
     }
 
