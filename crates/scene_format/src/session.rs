@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use crate::compose::{Arcs, Composed, FlatLayer, LayerId, Library, PathId, Selection, Spec};
 use crate::diagnostic::{Diagnostic, Report, nearest};
-use crate::layer::{ComponentSpec, FieldSpec};
+use crate::layer::{ComponentSpec, FieldSpec, Specifier};
 use crate::lex;
 use crate::options::Options;
 use crate::path::absolute_path_problem;
@@ -183,9 +183,10 @@ impl Session {
     pub(crate) fn check(&self, composed: &Composed, report: &mut Report) {
         let prims = self.variants.iter().map(|argument| &argument.prim);
         for word in prims.chain(self.sets.iter().map(|argument| &argument.prim)) {
-            if !composed.index.contains_key(&word.text) {
+            if !composed.index.contains_key(&word.text) || composed.session_only.contains(&word.text) {
                 let message = format!("there is no prim `{}`", word.text);
                 let names = composed.index.keys().map(String::as_str);
+                let names = names.filter(|name| !composed.session_only.contains(*name));
                 let error = Diagnostic::error("unknown-prim", message).suggest(nearest(&word.text, names));
                 report.push(error.at(word.place));
             }
@@ -231,18 +232,25 @@ fn prim_path(word: &Word, library: &mut Library<'_, '_>) -> Option<PathId> {
     Some(library.paths.intern(&word.text))
 }
 
-/// Finds or adds the spec of a prim, and specs of those above it. They do not bring prims into being:
-/// nobody lists them as children.
+/// Finds or adds the spec of a prim, and specs of those above it, each listed by its parent as in any
+/// layer. A prim that only these specs bring into being is none: see [`Composed::session_only`].
 fn spec_at<'s>(layer: &'s mut FlatLayer, path: PathId, library: &Library<'_, '_>) -> &'s mut Spec {
-    let mut missing = path;
-    while !layer.specs.iter().any(|spec| spec.path == missing) {
-        layer
-            .specs
-            .push(Spec::new(missing, Some(crate::layer::Specifier::Over)));
-        missing = library.paths.parent(missing);
+    let mut missing = Vec::new();
+    let mut above = path;
+    let number = loop {
+        if let Some(number) = layer.specs.iter().position(|spec| spec.path == above) {
+            break number;
+        }
+        missing.push(above);
+        above = library.paths.parent(above);
+    };
+    let mut number = number;
+    for path in missing.into_iter().rev() {
+        layer.specs[number].children.extend(library.paths.name(path));
+        layer.specs.push(Spec::new(path, Some(Specifier::Over)));
+        number = layer.specs.len() - 1;
     }
-    let at = layer.specs.iter().position(|spec| spec.path == path);
-    &mut layer.specs[at.expect("it was just added")]
+    &mut layer.specs[number]
 }
 
 /// Adds an opinion to a spec; an earlier one about the same field is replaced.

@@ -25,7 +25,7 @@ mod strength;
 mod values;
 mod variants;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 pub use graph::ArcKind;
@@ -46,6 +46,8 @@ pub(crate) struct Composed {
     pub(crate) prims: Vec<Prim>,
     pub(crate) index: BTreeMap<String, usize>,
     pub(crate) targets: Vec<TargetUse>,
+    /// Prims that nothing but the command line mentions, which are none.
+    pub(crate) session_only: BTreeSet<String>,
 }
 
 /// A prim to be composed.
@@ -92,6 +94,9 @@ pub(crate) fn compose(library: &mut Library<'_, '_>, stack: StackId, load_payloa
         idle_variants::warn_of_idle_variants(library, &graph, &prim);
         let position = composed.prims.len();
         let is_active = prim.active;
+        if is_session_only(library, &graph) {
+            composed.session_only.insert(prim.path.clone());
+        }
         composed.index.insert(prim.path.clone(), position);
         composed.prims.push(prim);
         if !is_active {
@@ -106,6 +111,15 @@ pub(crate) fn compose(library: &mut Library<'_, '_>, stack: StackId, load_payloa
     resolver.warn_of_idle_removals(library);
     composed.targets = resolver.targets;
     composed
+}
+
+/// Whether the command line alone says that there is such a prim.
+fn is_session_only(library: &Library<'_, '_>, graph: &Graph) -> bool {
+    let mut specs = graph.ids().flat_map(|node| {
+        let site = graph.node(node).site;
+        library.spec_numbers(site.stack, site.path)
+    });
+    specs.all(|(layer, _, _)| library.layer(layer).is_session)
 }
 
 fn push_children(library: &mut Library<'_, '_>, waiting: &mut Vec<Waiting>, graph: Rc<Graph>, parent: Option<usize>) {
