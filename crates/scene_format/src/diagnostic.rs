@@ -150,19 +150,27 @@ impl std::error::Error for Diagnostics {}
 /// At most this many errors are reported at once.
 const MOST_ERRORS: usize = 20;
 
+/// At most this many warnings, since each may come from every reference to one file.
+const MOST_WARNINGS: usize = 50;
+
 /// Collects messages while a scene is read.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Report {
     pub(crate) errors: Vec<Diagnostic>,
     pub(crate) warnings: Vec<Diagnostic>,
     pub(crate) omitted: usize,
+    pub(crate) omitted_warnings: usize,
     said: BTreeSet<(&'static str, Option<Place>, String)>,
 }
 
 impl Report {
     pub(crate) fn push(&mut self, diagnostic: Diagnostic) {
         if diagnostic.severity == Severity::Warning {
-            self.warnings.push(diagnostic);
+            if self.warnings.len() < MOST_WARNINGS {
+                self.warnings.push(diagnostic);
+            } else {
+                self.omitted_warnings += 1;
+            }
         } else if self.errors.len() < MOST_ERRORS {
             self.errors.push(diagnostic);
         } else {
@@ -181,6 +189,30 @@ impl Report {
         }
     }
 
+    /// Takes back what was said since, except about files, which are not read again.
+    pub(crate) fn forget_since(&mut self, before: Self) {
+        let now = std::mem::replace(self, before);
+        for warning in now.warnings {
+            if warning.code == "odd-model" {
+                self.push_once(warning);
+            }
+        }
+    }
+
+    /// Whether a further error would be shown; if not, suggestions for it are not worth their time.
+    pub(crate) fn has_room(&self) -> bool {
+        self.errors.len() < MOST_ERRORS
+    }
+
+    /// Ends with the warnings, and how many more there were.
+    pub(crate) fn into_warnings(mut self) -> Vec<Diagnostic> {
+        if self.omitted_warnings > 0 {
+            let message = format!("and {} more warnings", self.omitted_warnings);
+            self.warnings.push(Diagnostic::warning("more-warnings", message));
+        }
+        self.warnings
+    }
+
     pub(crate) fn is_refused(&self) -> bool {
         !self.errors.is_empty()
     }
@@ -196,11 +228,17 @@ impl Report {
     }
 }
 
+/// Longer words are not compared with others, which takes time with the square of their length.
+const LONGEST_GUESS: usize = 300;
+
 /// Finds the name that was probably meant.
 ///
 /// The nearest by Damerau-Levenshtein distance, if at most a third of it (and one at least) differs;
 /// on a tie the first.
 pub(crate) fn nearest<'n>(word: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+    if word.len() > LONGEST_GUESS {
+        return None;
+    }
     let limit = (word.chars().count() / 3).max(1);
     let folded = word.to_ascii_lowercase();
     let mut best: Option<(usize, &str)> = None;

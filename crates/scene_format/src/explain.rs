@@ -44,7 +44,7 @@ pub fn explain(scene: &Scene, question: &str) -> Result<String, Diagnostic> {
         let line = format!("  {:<3}{place:<a$}  {value:<b$}  {arc:<c$}  {verdict}", number + 1);
         let _ = writeln!(text, "{}", line.trim_end());
     }
-    for warning in remarks(prim, component, field) {
+    for warning in remarks(scene, prim, component, field) {
         let _ = writeln!(text, "  = {warning}");
     }
     Ok(text)
@@ -158,7 +158,7 @@ fn describe_arcs(scene: &Scene, prim: &Prim, opinion: &Opinion) -> String {
         let place = found.arc_place.map_or(String::new(), |place| {
             format!(" (from {})", scene.sources.describe_line(place))
         });
-        parts.push(format!("{} {}{place}", found.arc.word(), found.path));
+        parts.push(format!("{} {}{place}", found.arc.word(), scene.path_of(found)));
     }
     if parts.is_empty() {
         "local".to_owned()
@@ -232,7 +232,7 @@ fn between(winner: &Contributor, loser: &Contributor) -> String {
 }
 
 /// What deserves a word beside the list.
-fn remarks(prim: &Prim, component: &ComponentValue, field: &FieldValue) -> Vec<String> {
+fn remarks(scene: &Scene, prim: &Prim, component: &ComponentValue, field: &FieldValue) -> Vec<String> {
     let mut list = Vec::new();
     if prim.removed.iter().any(|removed| removed.name == component.name) {
         list.push(format!(
@@ -249,7 +249,7 @@ fn remarks(prim: &Prim, component: &ComponentValue, field: &FieldValue) -> Vec<S
         && !in_variant(&field.opinions[0])
         && let Some(hidden) = field.opinions.iter().find(|opinion| in_variant(opinion))
     {
-        let path = &prim.contributors[hidden.contributor as usize].path;
+        let path = scene.path_of(&prim.contributors[hidden.contributor as usize]);
         list.push(format!(
             "the stronger opinion makes the choice of a variant pointless here: {path} has one too"
         ));

@@ -38,6 +38,18 @@ pub(crate) enum ListEdit<T> {
 }
 
 impl<T> ListEdit<T> {
+    /// Counts the items that it names.
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Explicit(items) => items.len(),
+            Self::Edit {
+                prepend,
+                append,
+                delete,
+            } => prepend.len() + append.len() + delete.len(),
+        }
+    }
+
     /// Makes a list of other things of it; items without one are left out.
     pub(crate) fn filter_map<U>(&self, mut f: impl FnMut(&T) -> Option<U>) -> ListEdit<U> {
         let mut each = |items: &[T]| items.iter().filter_map(&mut f).collect();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::asset::Folders;
-use crate::compose::{Composed, LayerId, Library, compose};
+use crate::compose::{Composed, LayerId, Library, PathTable, compose};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::hash::hash_scene;
 use crate::options::Options;
@@ -20,9 +20,13 @@ use crate::validate::{check_fields, check_targets, resolve_assets};
 ///
 /// Everything that is wrong with it, up to 20 messages; after a mistake of syntax that one.
 pub fn load(path: &Path, schema: &Schema<'_>, options: &Options) -> Result<Scene, Diagnostics> {
-    let folders = Folders::of(folder_of(path), options.root.as_deref());
-    let mut library = Library::new(schema, &options.limits, folders);
+    on_large_stack(|| load_file(path, schema, options))
+}
+
+fn load_file(path: &Path, schema: &Schema<'_>, options: &Options) -> Result<Scene, Diagnostics> {
     let canonical = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    let folders = Folders::of(folder_of(&canonical), options.root.as_deref());
+    let mut library = Library::new(schema, &options.limits, folders);
     match library.add_source(&canonical, &path.display().to_string(), None) {
         Ok(source) => load_source(library, source, Some(canonical), options),
         Err(error) => {
@@ -38,6 +42,29 @@ pub fn load(path: &Path, schema: &Schema<'_>, options: &Options) -> Result<Scene
 ///
 /// As [`load`].
 pub fn load_str(name: &str, text: &str, schema: &Schema<'_>, options: &Options) -> Result<Scene, Diagnostics> {
+    on_large_stack(|| load_text(name, text, schema, options))
+}
+
+/// Composition goes down the namespace within each arc of a chain, thousands of calls in the worst scene that the
+/// limits allow.
+const STACK_BYTES: usize = 256 << 20;
+
+/// Runs on a thread whose stack is large enough for every scene, wherever a program loads from. Pages that are not
+/// touched cost nothing.
+fn on_large_stack<T: Send>(run: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new()
+            .stack_size(STACK_BYTES)
+            .spawn_scoped(scope, run)
+            .expect("a program that cannot start a thread cannot render either");
+        match thread.join() {
+            Ok(result) => result,
+            Err(panic) => std::panic::resume_unwind(panic),
+        }
+    })
+}
+
+fn load_text(name: &str, text: &str, schema: &Schema<'_>, options: &Options) -> Result<Scene, Diagnostics> {
     let folder = folder_of(Path::new(name));
     let folders = Folders::of(folder, options.root.as_deref());
     let mut library = Library::new(schema, &options.limits, folders);
@@ -79,8 +106,9 @@ fn load_source(
                 reading: library.reading,
                 composing: begun.elapsed().saturating_sub(library.reading - read_before),
             };
-            scene.warnings = library.report.warnings;
+            scene.warnings = library.report.into_warnings();
             scene.sources = library.sources;
+            scene.paths = library.paths;
             Ok(scene)
         }
         _ => Err(library.report.into_diagnostics(library.sources)),
@@ -128,6 +156,7 @@ fn compose_scene(library: &mut Library<'_, '_>, layer: LayerId, options: &Option
         assets,
         cost: LoadCost::default(),
         sources: Sources::default(),
+        paths: PathTable::default(),
         folders: library.folders.clone(),
     })
 }
@@ -140,12 +169,18 @@ fn compose_with_session(library: &mut Library<'_, '_>, layer: LayerId, options: 
     if session.has_short_sets() {
         let above = session.layer(library, None);
         let stack = library.build_stack(layer, Some(above));
+        let before = library.report.clone();
         found = Some(compose(library, stack, options.load_payloads));
+        if library.report.is_refused() && !library.is_complete() {
+            return None;
+        }
+        // What this scene lacks, the arguments may add.
+        library.report.forget_since(before);
     }
     let above = (!session.is_empty()).then(|| session.layer(library, found.as_ref()));
     let stack = library.build_stack(layer, above);
     let composed = compose(library, stack, options.load_payloads);
-    if library.report.is_refused() && !library.is_complete() {
+    if composed.is_cut_short || (library.report.is_refused() && !library.is_complete()) {
         return None;
     }
     session.check(&composed, &mut library.report);

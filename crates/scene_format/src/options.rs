@@ -27,6 +27,9 @@ pub struct Limits {
     pub arc_depth: usize,
     /// Places that may have opinions about one prim; 100,000.
     pub index_nodes: usize,
+    /// Steps of composition, a place, a layer at a place, a name, a target and so on one each; 200,000,000, which
+    /// take a minute or so.
+    pub work: usize,
 }
 
 impl Default for Limits {
@@ -43,13 +46,14 @@ impl Default for Limits {
             name_bytes: 128,
             arc_depth: 64,
             index_nodes: 100_000,
+            work: 200_000_000,
         }
     }
 }
 
 impl Limits {
     /// Names of the limits, for [`Self::set`].
-    pub const NAMES: [&str; 11] = [
+    pub const NAMES: [&str; 12] = [
         "file_bytes",
         "layers",
         "prims",
@@ -61,6 +65,7 @@ impl Limits {
         "name_bytes",
         "arc_depth",
         "index_nodes",
+        "work",
     ];
 
     /// Sets the limit of a name; false if there is none of that name.
@@ -77,6 +82,7 @@ impl Limits {
             "name_bytes" => &mut self.name_bytes,
             "arc_depth" => &mut self.arc_depth,
             "index_nodes" => &mut self.index_nodes,
+            "work" => &mut self.work,
             _ => return false,
         };
         *limit = value;

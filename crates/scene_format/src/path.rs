@@ -1,5 +1,7 @@
 //! Names of prims and paths made of them.
 
+use crate::options::DEEPEST;
+
 /// Why a name is not one.
 pub(crate) fn name_problem(name: &str, longest: usize) -> Option<String> {
     if name.is_empty() {
@@ -22,7 +24,14 @@ pub(crate) fn absolute_path_problem(path: &str, longest: usize) -> Option<String
     let Some(names) = path.strip_prefix('/') else {
         return Some(format!("`{path}` is not an absolute path; paths begin with `/`"));
     };
+    if names.split('/').count() > DEEPEST {
+        return Some(too_deep());
+    }
     names.split('/').find_map(|name| name_problem(name, longest))
+}
+
+fn too_deep() -> String {
+    format!("a path has at most {DEEPEST} names")
 }
 
 /// Makes the path of a target absolute: `/A/B` stays, `../B`, `./B`, `B` and `.` begin at `owner`.
@@ -54,6 +63,9 @@ pub(crate) fn resolve_target(text: &str, owner: &str, longest: usize) -> Result<
                 None => names.push(name),
             },
         }
+    }
+    if names.len() > DEEPEST {
+        return Err(too_deep());
     }
     if names.is_empty() {
         return Err(format!("`{text}` is the root of the scene, which is not a prim"));

@@ -96,6 +96,13 @@ fn reached_by(place: Place, sources: &Sources) -> Option<String> {
         source = naming;
     }
     steps.reverse();
+    if steps.len() > MOST_RELATED {
+        let left_out = steps.len() - MOST_RELATED;
+        steps.splice(
+            MOST_RELATED / 2..MOST_RELATED / 2 + left_out,
+            [format!(".. {left_out} more .. -> ")],
+        );
+    }
     let name = &sources.get(place.source)?.name;
     (!steps.is_empty()).then(|| format!("reached by: {}{}", steps.concat(), visible(name)))
 }

@@ -9,7 +9,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bevy_reflect::{FromReflect, PartialReflect, Reflect, ReflectFromReflect, ReflectMut};
 
 use crate::asset::{self, Folders};
-use crate::compose::ArcKind;
+use crate::compose::{ArcKind, PathId, PathTable};
 use crate::diagnostic::Diagnostic;
 use crate::layer::{Specifier, TimeSettings};
 use crate::sample;
@@ -39,6 +39,7 @@ pub struct Scene {
     /// The texts that places refer to.
     pub sources: Sources,
     pub(crate) index: BTreeMap<String, usize>,
+    pub(crate) paths: PathTable,
     pub(crate) folders: Folders,
 }
 
@@ -111,8 +112,8 @@ pub struct VariantChoice {
 /// tree of arcs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contributor {
-    /// The prim there; in the body of a variant `/World/Ring{metal=gold}Stone`.
-    pub path: String,
+    /// The prim there; see [`Scene::path_of`].
+    pub(crate) path: PathId,
     /// What brings its opinions.
     pub arc: ArcKind,
     /// Where the arc is written; for a variant where it is selected. None for the prim itself.
@@ -280,6 +281,12 @@ impl FieldValue {
 }
 
 impl Scene {
+    /// Gives the path of a place as it is in its own file; in the body of a variant
+    /// `/World/Ring{metal=gold}Stone`.
+    pub fn path_of(&self, contributor: &Contributor) -> String {
+        self.paths.text(contributor.path)
+    }
+
     /// Finds a prim by its path.
     pub fn prim(&self, path: &str) -> Option<&Prim> {
         self.index_of(path).map(|index| &self.prims[index])

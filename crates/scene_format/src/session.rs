@@ -154,7 +154,8 @@ impl Session {
             };
             let selection = Selection {
                 set: library.paths.word(&argument.set.text),
-                variant: Some(library.paths.word(&argument.variant.text)),
+                // `{set=}` chooses nothing, as in a file.
+                variant: (!argument.variant.text.is_empty()).then(|| library.paths.word(&argument.variant.text)),
                 place: argument.variant.place,
             };
             let spec = spec_at(&mut layer, path, library);
@@ -192,7 +193,9 @@ impl Session {
             }
         }
         for argument in &self.variants {
-            if let Some(&prim) = composed.index.get(&argument.prim.text) {
+            if let Some(&prim) = composed.index.get(&argument.prim.text)
+                && !composed.session_only.contains(&argument.prim.text)
+            {
                 argument.check_set(&composed.prims[prim], report);
             }
         }
@@ -212,7 +215,7 @@ impl VariantArgument {
             }
             return report.push(error.at(self.set.place));
         };
-        if !found.variants.contains(&self.variant.text) {
+        if !self.variant.text.is_empty() && !found.variants.contains(&self.variant.text) {
             let variant = &self.variant.text;
             let names = found.variants.iter().map(String::as_str);
             let message = format!("the set `{set}` of `{path}` has no variant `{variant}`");

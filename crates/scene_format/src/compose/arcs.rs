@@ -1,11 +1,9 @@
 //! The arcs that specs write: references, payloads, inherits, specializes.
 
-use std::collections::HashSet;
-use std::hash::Hash;
-
 use super::graph::{ArcKind, NewArc, NodeId, Site};
 use super::indexer::{ArcOptions, Composer, Indexer, new_arc};
 use super::library::{FileId, LayerId, Library, StackId};
+use super::list_edits::{Combined, EditTrouble};
 use super::mapping::{PathMap, TimeMap};
 use super::paths::{PathId, Step, Word};
 use super::spec::{Arcs, AssetRef};
@@ -93,46 +91,56 @@ impl Library<'_, '_> {
     /// Combines the list edits of a site's layers, weak to strong. The time of a layer is applied to
     /// the files that it names; what stays in the layer stack has the times of its layers already.
     fn asset_list(&mut self, site: Site, which: AssetArcKind) -> Vec<AssetRef> {
-        let edits: Vec<ListEdit<AssetRef>> = self
-            .specs(site.stack, site.path)
-            .filter_map(|(_, time, spec)| {
-                let edit = which.list(spec.arcs.as_deref()?)?;
-                Some(edit.filter_map(|asset| {
-                    let mut asset = asset.clone();
-                    if asset.file.is_some() {
-                        asset.time = time.after(asset.time);
-                    }
-                    Some(asset)
-                }))
-            })
-            .collect();
-        let keyed: Vec<ListEdit<(Option<FileId>, AssetRef)>> = edits
-            .iter()
-            .map(|edit| edit.filter_map(|asset| Some((self.locate(asset), asset.clone()))))
-            .collect();
-        let list = combine(&keyed, |(file, asset)| (*file, asset.prim));
-        for (place, text) in list.without_effect(|(_, asset)| asset.place) {
-            self.warn_edit(place, text);
+        let mut list = Combined::default();
+        for (layer, time, spec) in self.weak_to_strong(site) {
+            let arcs = self.layer(layer).specs[spec as usize].arcs.as_deref();
+            let Some(edit) = arcs.and_then(|arcs| which.list(arcs)).cloned() else {
+                continue;
+            };
+            self.work += edit.len();
+            if self.is_exhausted() {
+                break;
+            }
+            let edit = edit.filter_map(|asset| {
+                let mut asset = asset.clone();
+                if asset.file.is_some() {
+                    asset.time = time.after(asset.time);
+                }
+                Some((self.locate(&asset), asset))
+            });
+            list.add(&edit, |(file, asset): &(Option<FileId>, AssetRef)| (*file, asset.prim));
+        }
+        for (place, trouble) in list.troubles(|(_, asset)| asset.place) {
+            self.warn_edit(place, trouble);
         }
         list.items.into_iter().map(|(_, asset)| asset).collect()
     }
 
     fn class_list(&mut self, site: Site, kind: ArcKind) -> Vec<Spanned<PathId>> {
-        let edits: Vec<ListEdit<Spanned<PathId>>> = self
-            .specs(site.stack, site.path)
-            .filter_map(|(_, _, spec)| {
-                let arcs = spec.arcs.as_deref()?;
-                match kind {
-                    ArcKind::Inherits => arcs.inherits.clone(),
-                    _ => arcs.specializes.clone(),
-                }
-            })
-            .collect();
-        let list = combine(&edits, |item| item.value);
-        for (place, text) in list.without_effect(|item| item.place) {
-            self.warn_edit(place, text);
+        let mut list = Combined::default();
+        for (layer, _, spec) in self.weak_to_strong(site) {
+            let arcs = self.layer(layer).specs[spec as usize].arcs.as_deref();
+            let edit = arcs.and_then(|arcs| match kind {
+                ArcKind::Inherits => arcs.inherits.clone(),
+                _ => arcs.specializes.clone(),
+            });
+            let Some(edit) = edit else { continue };
+            self.work += edit.len();
+            if self.is_exhausted() {
+                break;
+            }
+            list.add(&edit, |item: &Spanned<PathId>| item.value);
+        }
+        for (place, trouble) in list.troubles(|item| item.place) {
+            self.warn_edit(place, trouble);
         }
         list.items
+    }
+
+    fn weak_to_strong(&self, site: Site) -> Vec<(LayerId, TimeMap, u32)> {
+        let mut list: Vec<_> = self.spec_numbers(site.stack, site.path).collect();
+        list.reverse();
+        list
     }
 
     fn warn_edit(&mut self, place: Place, code: EditTrouble) {
@@ -145,77 +153,6 @@ impl Library<'_, '_> {
     fn default_prim(&self, layer: LayerId) -> Option<PathId> {
         self.layer(layer).default_prim.as_ref().map(|name| name.value)
     }
-}
-
-/// A list that several opinions made.
-pub(crate) struct Combined<T> {
-    pub(crate) items: Vec<T>,
-    /// Items of `delete` that were not there.
-    idle_deletes: Vec<T>,
-    /// Items that a stronger plain list replaces.
-    dropped: Vec<T>,
-}
-
-/// What is odd about an edit of a list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum EditTrouble {
-    IdleDelete,
-    Dropped,
-}
-
-impl EditTrouble {
-    pub(crate) fn warning(self, name: &str) -> Diagnostic {
-        match self {
-            Self::IdleDelete => Diagnostic::warning(
-                "delete-without-effect",
-                format!("there is no `{name}` here to be deleted"),
-            )
-            .note("`delete` removes what weaker layers of the same file list, not what comes through an arc"),
-            Self::Dropped => Diagnostic::warning(
-                "list-drops-items",
-                format!("a plain list in a stronger layer drops `{name}`"),
-            )
-            .note("a plain list replaces what is weaker; `Edit(prepend: ..)` adds to it"),
-        }
-    }
-}
-
-impl<T> Combined<T> {
-    /// Lists what deserves a warning, with its place.
-    pub(crate) fn without_effect(&self, place: impl Fn(&T) -> Place) -> Vec<(Place, EditTrouble)> {
-        let idle = self
-            .idle_deletes
-            .iter()
-            .map(|item| (place(item), EditTrouble::IdleDelete));
-        let dropped = self.dropped.iter().map(|item| (place(item), EditTrouble::Dropped));
-        idle.chain(dropped).collect()
-    }
-}
-
-/// Combines opinions about a list, given strong to weak; items with one `key` are one.
-pub(crate) fn combine<T: Clone, K: Eq + Hash>(edits: &[ListEdit<T>], key: impl Fn(&T) -> K) -> Combined<T> {
-    let mut combined = Combined {
-        items: Vec::new(),
-        idle_deletes: Vec::new(),
-        dropped: Vec::new(),
-    };
-    for edit in edits.iter().rev() {
-        let before: HashSet<K> = combined.items.iter().map(&key).collect();
-        match edit {
-            ListEdit::Explicit(items) if !items.is_empty() && !combined.items.is_empty() => {
-                let now: HashSet<K> = items.iter().map(&key).collect();
-                let lost = combined.items.iter().filter(|item| !now.contains(&key(item)));
-                combined.dropped.extend(lost.cloned());
-            }
-            ListEdit::Edit { delete, .. } => {
-                let idle = delete.iter().filter(|item| !before.contains(&key(item)));
-                combined.idle_deletes.extend(idle.cloned());
-            }
-            ListEdit::Explicit(_) => {}
-        }
-        edit.apply(&mut combined.items, &key);
-    }
-    combined
 }
 
 impl Indexer<'_> {

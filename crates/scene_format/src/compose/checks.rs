@@ -164,7 +164,10 @@ pub(crate) fn refuse_children(library: &mut Library<'_, '_>, graph: &Graph) {
     if names.is_empty() {
         return;
     }
-    let message = format!("prims are nested more than {} deep", library.limits.prim_depth);
+    let message = format!(
+        "prims are nested more than {} deep",
+        library.limits.prim_depth.min(crate::options::DEEPEST)
+    );
     let place = graph.strong_to_weak().into_iter().find_map(|node| {
         let site = graph.node(node).site;
         library.specs(site.stack, site.path).find_map(|(_, _, spec)| spec.place)

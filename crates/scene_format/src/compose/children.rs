@@ -23,11 +23,18 @@ pub(crate) fn child_names(library: &mut Library<'_, '_>, graph: &Graph) -> Vec<W
             continue;
         }
         let specs: Vec<_> = library.specs(found.site.stack, found.site.path).collect();
+        let mut met = 0;
         for (_, _, spec) in specs.into_iter().rev() {
+            met += 1 + spec.children.len() + 2 * spec.order.len();
             names.extend(spec.children.iter().copied().filter(|&name| seen.insert(name)));
             if !spec.order.is_empty() {
+                met += names.len();
                 idle.extend(reorder(&mut names, &spec.order));
             }
+        }
+        library.work += met;
+        if library.is_exhausted() {
+            break;
         }
     }
     for (name, place) in idle {

@@ -79,12 +79,7 @@ fn overruled(library: &Library<'_, '_>, graph: &Graph, prim: &Prim, selection: S
             return None;
         }
     }
-    let suffix = format!(
-        "{{{}={}}}",
-        library.paths.word_text(selection.set),
-        library.paths.word_text(selection.variant?)
-    );
-    let from_variant = |contributor: u32| prim.contributors[contributor as usize].path.ends_with(&suffix);
+    let from_variant = |contributor: u32| library.paths.step(prim.contributors[contributor as usize].path) == step;
     let fields = prim.components.iter().flat_map(|component| &component.fields);
     let touched: Vec<&FieldValue> = fields
         .filter(|field| field.opinions.iter().any(|opinion| from_variant(opinion.contributor)))

@@ -15,23 +15,18 @@ use super::paths::{PathId, Step, Word};
 use crate::diagnostic::Diagnostic;
 use crate::source::Place;
 
-/// Steps of searches for variants that one prim may take.
-const MOST_WORK: usize = 100_000_000;
-
 /// What all trees of a scene share while they are built.
 pub(crate) struct Composer<'l, 'a, 'r> {
     pub(crate) library: &'l mut Library<'a, 'r>,
     pub(crate) load_payloads: bool,
-    /// Nodes made for the prim in work, those of trees within its tree too.
+    /// Nodes made for the prim in work, those that arrive through trees within its tree too.
     pub(crate) nodes: usize,
-    /// Steps of searches for variants, which bound the time that hostile files can take.
-    pub(crate) work: usize,
 }
 
 impl Composer<'_, '_, '_> {
     /// Whether the prim in work takes more than a scene may need.
     pub(crate) fn is_exhausted(&self) -> bool {
-        self.nodes > self.library.limits.index_nodes || self.work > MOST_WORK
+        self.nodes > self.library.limits.index_nodes || self.library.is_exhausted()
     }
 }
 
@@ -128,7 +123,10 @@ pub(crate) fn build_graph(
         Step::Variant { .. } => Graph::new(site, composer.library),
         Step::Child(name) => child_graph(composer, site, name, options, parent, frame),
     };
-    composer.nodes += graph.len();
+    composer.library.work += graph.len();
+    if frame.is_none() {
+        composer.nodes += graph.len();
+    }
     let mut indexer = Indexer {
         graph,
         frame,
@@ -208,6 +206,9 @@ impl Indexer<'_> {
 
     fn report_size(&self, composer: &mut Composer<'_, '_, '_>) {
         let library = &mut *composer.library;
+        if library.is_exhausted() {
+            return library.report_exhaustion();
+        }
         let path = library.paths.text(self.site.path);
         let message = format!(
             "`{path}` is composed of more than {} places; do references double at every level?",
@@ -387,6 +388,7 @@ impl Indexer<'_> {
         let mut graph = &self.graph;
         let mut frame = self.frame;
         loop {
+            composer.library.work += graph.len();
             if graph.contributing_site(site).is_some() {
                 return true;
             }
@@ -527,7 +529,7 @@ fn take_first_implied(
     }
     let mut waiting = vec![(NodeId::ROOT, false)];
     while let Some((node, below_done)) = waiting.pop() {
-        composer.work += 1;
+        composer.library.work += 1;
         if below_done {
             if tasks.remove(&node) {
                 return Some(node);
@@ -547,7 +549,7 @@ fn take_strongest(
     graph: &Graph,
     tasks: &mut Vec<VariantTask>,
 ) -> Option<VariantTask> {
-    composer.work += tasks.len();
+    composer.library.work += tasks.len() * 16;
     let paths = &composer.library.paths;
     let best = (0..tasks.len()).min_by(|&a, &b| {
         let (a, b) = (&tasks[a], &tasks[b]);

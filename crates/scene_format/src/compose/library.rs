@@ -1,7 +1,7 @@
 //! The files of a scene, each read once, and the stacks of layers that they make.
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -53,6 +53,9 @@ pub(crate) struct LayerStack {
     links: Vec<(u32, u32, u32)>,
 }
 
+/// Fields of `links` that make up one opinion in the count of opinions.
+const LINKS_PER_OPINION: usize = 4;
+
 impl LayerStack {
     /// Whether a layer says anything at a path.
     pub(crate) fn has_specs(&self, path: PathId) -> bool {
@@ -76,8 +79,12 @@ pub(crate) struct Library<'a, 'r> {
     /// Which file a text means that is written in another.
     named: HashMap<(SourceId, Box<str>), FileId>,
     opinions: usize,
+    /// Steps of composition so far: what bounds the time that hostile files can take.
+    pub(crate) work: usize,
     /// Time spent on reading files so far.
     pub(crate) reading: Duration,
+    /// Sublayers that close a circle, and whose they are; each is reported once.
+    closed_cycles: BTreeSet<(LayerId, LayerId)>,
     /// What the command line selects, by prim.
     pub(crate) session_selections: HashMap<PathId, Vec<Selection>>,
 }
@@ -98,7 +105,9 @@ impl<'a, 'r> Library<'a, 'r> {
             stack_of: BTreeMap::new(),
             named: HashMap::new(),
             opinions: 0,
+            work: 0,
             reading: Duration::ZERO,
+            closed_cycles: BTreeSet::new(),
             session_selections: HashMap::new(),
         }
     }
@@ -304,6 +313,18 @@ impl<'a, 'r> Library<'a, 'r> {
         Ok(model.text)
     }
 
+    /// Whether composition takes more steps than a scene may need.
+    pub(crate) fn is_exhausted(&self) -> bool {
+        self.work > self.limits.work
+    }
+
+    pub(crate) fn report_exhaustion(&mut self) {
+        let message = format!("composing takes more than {} steps", self.limits.work);
+        let error = Diagnostic::error("too-much-work", message)
+            .note("long lists times many references, or arcs that multiply; `--limit work=N` allows more");
+        self.report.push_once(error);
+    }
+
     /// How many files and fields there are, the command line's included.
     pub(crate) fn counts(&self) -> (usize, usize) {
         (self.layers.len(), self.opinions)
@@ -335,12 +356,23 @@ impl<'a, 'r> Library<'a, 'r> {
         let mut heads = HashMap::new();
         let mut links = Vec::new();
         for (position, &(layer, _)) in layers.iter().enumerate().rev() {
+            if links.len() / LINKS_PER_OPINION + self.opinions > self.limits.opinions {
+                let message = format!(
+                    "the files and their sublayers have more than {} opinions",
+                    self.limits.opinions
+                );
+                let note = "a file that many others list as their sublayer counts for each of them";
+                self.report
+                    .push_once(Diagnostic::error("too-many-opinions", message).note(note));
+                break;
+            }
             for (number, spec) in self.layer(layer).specs.iter().enumerate() {
                 let head = heads.entry(spec.path).or_insert(0);
                 links.push((position as u32, number as u32, *head));
                 *head = links.len() as u32;
             }
         }
+        self.opinions += links.len() / LINKS_PER_OPINION;
         self.stacks.push(LayerStack { layers, heads, links });
         StackId(self.stacks.len() as u32 - 1)
     }
@@ -370,7 +402,9 @@ impl<'a, 'r> Library<'a, 'r> {
             above.push((layer, asset.place));
             let time = time.after(asset.time);
             if let Some(first) = above.iter().position(|&(other, _)| other == below) {
-                self.report_cycle(&above[first..]);
+                if self.closed_cycles.insert((layer, below)) {
+                    self.report_cycle(&above[first..]);
+                }
             } else if !time.is_sound() {
                 let message = "the offsets of the sublayers to here add up to a time that is too large";
                 self.report

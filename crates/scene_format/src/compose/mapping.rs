@@ -1,6 +1,7 @@
 //! How an arc carries paths and times from the place that it targets to the place that wrote it.
 
 use super::paths::{PathId, PathTable};
+use crate::options::DEEPEST;
 
 /// A change of time: outer = inner × scale + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,12 +136,18 @@ impl PathMap {
             return Self { time, ..self.clone() };
         }
         let mut pairs: Vec<Pair> = Vec::new();
+        // Longer paths name nothing: arcs are written, and lead, where prims can be.
+        let can_be = |path: PathId, paths: &PathTable| usize::from(paths.steps(path)) <= 4 * DEEPEST;
         for &(from, to) in &inner.pairs {
+            if from.is_some_and(|from| !can_be(from, paths)) {
+                continue;
+            }
             // What has no image must not be taken for something that stays as it is.
             pairs.push((from, to.and_then(|to| self.to_target(to, paths))));
         }
         for &(from, to) in &self.pairs {
             if let Some(from) = from.and_then(|from| inner.to_source(from, paths))
+                && can_be(from, paths)
                 && !pairs.iter().any(|&(other, _)| other == Some(from))
             {
                 pairs.push((Some(from), to));

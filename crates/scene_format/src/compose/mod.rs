@@ -17,6 +17,7 @@ mod graph;
 mod idle_variants;
 mod indexer;
 mod library;
+mod list_edits;
 mod mapping;
 mod paths;
 mod resolve;
@@ -30,11 +31,12 @@ use std::rc::Rc;
 
 pub use graph::ArcKind;
 pub(crate) use library::{LayerId, Library, StackId};
-pub(crate) use paths::PathId;
+pub(crate) use paths::{PathId, PathTable};
 pub(crate) use resolve::TargetUse;
 pub(crate) use spec::{Arcs, FlatLayer, Selection, Spec};
 
 use crate::diagnostic::Diagnostic;
+use crate::options::DEEPEST;
 use crate::scene::Prim;
 use graph::{Graph, Site};
 use indexer::{BuildOptions, Composer, build_graph};
@@ -46,6 +48,8 @@ pub(crate) struct Composed {
     pub(crate) prims: Vec<Prim>,
     pub(crate) index: BTreeMap<String, usize>,
     pub(crate) targets: Vec<TargetUse>,
+    /// Whether a limit ended it early, which was reported; what is missing then means nothing.
+    pub(crate) is_cut_short: bool,
     /// Prims that nothing but the command line mentions, which are none.
     pub(crate) session_only: BTreeSet<String>,
 }
@@ -74,6 +78,7 @@ pub(crate) fn compose(library: &mut Library<'_, '_>, stack: StackId, load_payloa
         let limits = library.limits;
         if composed.prims.len() >= limits.prims || resolver.opinions > limits.opinions {
             report_size(library, composed.prims.len());
+            composed.is_cut_short = true;
             break;
         }
         let site = Site { stack, path: next.path };
@@ -81,11 +86,14 @@ pub(crate) fn compose(library: &mut Library<'_, '_>, stack: StackId, load_payloa
             library: &mut *library,
             load_payloads,
             nodes: 0,
-            work: 0,
         };
         let graph = build_graph(&mut composer, site, BuildOptions::WHOLE, Some(&next.above), None);
         if composer.is_exhausted() {
-            // It was reported; the other prims would take as long.
+            // It was reported, unless it was met outside of the tree; the other prims would take as long.
+            if library.is_exhausted() {
+                library.report_exhaustion();
+            }
+            composed.is_cut_short = true;
             break;
         }
         checks::check_graph(library, &graph);
@@ -102,11 +110,15 @@ pub(crate) fn compose(library: &mut Library<'_, '_>, stack: StackId, load_payloa
         if !is_active {
             continue;
         }
-        if usize::from(library.paths.depth(next.path)) >= limits.prim_depth {
+        if usize::from(library.paths.depth(next.path)) >= limits.prim_depth.min(DEEPEST) {
             checks::refuse_children(library, &graph);
             continue;
         }
         push_children(library, &mut waiting, Rc::new(graph), Some(position));
+    }
+    if library.is_exhausted() {
+        library.report_exhaustion();
+        composed.is_cut_short = true;
     }
     resolver.warn_of_idle_removals(library);
     composed.targets = resolver.targets;

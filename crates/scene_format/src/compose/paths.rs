@@ -95,8 +95,8 @@ impl PathTable {
         self.entries.push(Entry {
             parent,
             step,
-            depth: above.depth + u16::from(is_child),
-            steps: above.steps + 1,
+            depth: above.depth.saturating_add(u16::from(is_child)),
+            steps: above.steps.saturating_add(1),
             in_variant: above.in_variant || !is_child,
         });
         self.numbers.insert((parent, step), path);

@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::arcs::{EditTrouble, combine};
 use super::checks::variants_of;
 use super::graph::{ArcKind, Graph, NodeId};
 use super::library::{LayerId, Library};
+use super::list_edits::{Combined, EditTrouble};
 use super::mapping::TimeMap;
 use super::paths::{Step, Word};
 use super::spec::Spec;
-use super::values::{clone_samples, clone_value};
+use super::values::{clone_samples, clone_value, list_length};
 use crate::diagnostic::Diagnostic;
 use crate::layer::{FieldOpinion, FieldSpec, ListEdit, Spanned, Specifier};
 use crate::relation::{Target, Targets};
@@ -74,6 +74,8 @@ impl Resolver {
         above: bool,
     ) -> Prim {
         let contributions = contributions(library, graph);
+        library.work += graph.len() + 4 * contributions.len();
+        self.opinions += graph.len() / 4;
         let mut prim = Resolving {
             resolver: self,
             library,
@@ -272,7 +274,7 @@ impl Resolving<'_, '_, '_, '_> {
             .map(|&node| {
                 let found = self.graph.node(node);
                 Contributor {
-                    path: self.library.paths.text(found.site.path),
+                    path: found.site.path,
                     arc: found.kind,
                     arc_place: found.place,
                     parent: self.graph.parent(node).map(|parent| positions[&parent]),
@@ -336,15 +338,19 @@ impl Resolving<'_, '_, '_, '_> {
     }
 
     fn value(&mut self, strongest: FieldPlace) -> FieldState {
-        let time = self.contributions[strongest.contribution].time;
-        let spec = self.field_spec(strongest);
+        let contribution = &self.contributions[strongest.contribution];
+        let time = contribution.time;
+        let spec = &self.library.layer(contribution.layer).specs[contribution.spec as usize];
+        let spec = &spec.components[strongest.component].fields[strongest.field];
         let (state, trouble) = match &spec.opinion {
             FieldOpinion::Constant(value) => {
+                self.resolver.opinions += list_length(&**value);
                 let message = "values of this type cannot be copied; its component has to derive `Clone`";
                 let copy = clone_value(&**value).map(FieldState::Constant);
                 (copy, ("wrong-type", message))
             }
             FieldOpinion::Samples(samples) => {
+                self.resolver.opinions += samples.len();
                 let message = "the offsets and scales up to here leave no distinct times for these samples";
                 let copy = clone_samples(samples, time).map(FieldState::Samples);
                 (copy, ("bad-layer-offset", message))
@@ -361,24 +367,28 @@ impl Resolving<'_, '_, '_, '_> {
 
     /// Combines lists of targets, each item carried to the scene's namespace; none if blocked.
     fn combine_targets(&mut self, kind: FieldKind, places: &[FieldPlace]) -> Option<Vec<Spanned<String>>> {
-        let mut edits = Vec::new();
-        for &place in places {
-            match &self.field_spec(place).opinion {
-                FieldOpinion::Targets(edit) => {
-                    let edit = edit.clone();
-                    edits.push(self.carry_targets(edit, place.contribution));
-                }
-                // What is weaker is hidden.
-                _ => break,
-            }
-        }
-        if edits.is_empty() {
+        let is_targets = |place: &&FieldPlace| matches!(self.field_spec(**place).opinion, FieldOpinion::Targets(_));
+        // What is weaker than `Block` is hidden.
+        let visible: Vec<FieldPlace> = places.iter().take_while(is_targets).copied().collect();
+        if visible.is_empty() {
             return None;
         }
-        let key = |item: &CarriedTarget| item.image.clone().ok_or(item.written.place);
-        let combined = combine(&edits, key);
+        let mut combined = Combined::default();
+        for &place in visible.iter().rev() {
+            let FieldOpinion::Targets(edit) = &self.field_spec(place).opinion else {
+                continue;
+            };
+            let edit = edit.clone();
+            self.library.work += edit.len() * 16;
+            if self.library.is_exhausted() {
+                break;
+            }
+            let edit = self.carry_targets(edit, place.contribution);
+            let key = |item: &CarriedTarget| item.image.clone().ok_or(item.written.place);
+            combined.add(&edit, key);
+        }
         let is_list = matches!(kind, FieldKind::Targets { .. });
-        for (place, trouble) in combined.without_effect(|item| item.written.place) {
+        for (place, trouble) in combined.troubles(|item| item.written.place) {
             // To point somewhere else is what a stronger opinion about one target is for.
             if !is_list && trouble == EditTrouble::Dropped {
                 continue;

@@ -1,6 +1,6 @@
 //! Copies of opinions for the prims that they reach.
 
-use bevy_reflect::PartialReflect;
+use bevy_reflect::{PartialReflect, ReflectRef};
 
 use super::mapping::TimeMap;
 
@@ -9,6 +9,16 @@ pub(crate) fn clone_value(value: &dyn PartialReflect) -> Option<Box<dyn PartialR
     match value.reflect_clone() {
         Ok(copy) => Some(copy.into_partial_reflect()),
         Err(_) => value.to_dynamic().ok(),
+    }
+}
+
+/// Counts the items of a list; other values count nothing more than themselves.
+pub(crate) fn list_length(value: &dyn PartialReflect) -> usize {
+    match value.reflect_ref() {
+        ReflectRef::List(items) => items.len(),
+        ReflectRef::Map(items) => items.len(),
+        ReflectRef::Set(items) => items.len(),
+        _ => 0,
     }
 }
 

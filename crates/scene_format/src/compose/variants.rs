@@ -103,7 +103,7 @@ fn search<T>(
     path: PathId,
     find: &mut impl FnMut(&mut Composer<'_, '_, '_>, NodeId, PathId) -> Option<T>,
 ) -> Option<T> {
-    composer.work += 1;
+    composer.library.work += 1;
     if let Some(found) = find(composer, node, path) {
         return Some(found);
     }

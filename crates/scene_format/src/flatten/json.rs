@@ -20,7 +20,7 @@ use crate::source::{Place, Sources};
 /// `Component.field` the places of all opinions, strongest first, as `LAYER:PRIM`. Samples have their
 /// values at four times, too: before, a quarter, half, after.
 pub fn flatten_json(scene: &Scene) -> String {
-    let prims: Vec<Value> = scene.prims.iter().map(|prim| prim_json(prim, &scene.sources)).collect();
+    let prims: Vec<Value> = scene.prims.iter().map(|prim| prim_json(prim, scene)).collect();
     json!({ "status": "ok", "prims": prims }).to_string()
 }
 
@@ -45,7 +45,7 @@ pub fn errors_json(refusal: &Diagnostics) -> String {
     json!({ "status": "error", "errors": errors }).to_string()
 }
 
-fn prim_json(prim: &Prim, sources: &Sources) -> Value {
+fn prim_json(prim: &Prim, scene: &Scene) -> Value {
     let mut entry = Map::new();
     entry.insert("path".into(), json!(prim.path));
     let specifier = match prim.specifier {
@@ -80,8 +80,8 @@ fn prim_json(prim: &Prim, sources: &Sources) -> Value {
                 .opinions
                 .iter()
                 .map(|opinion| {
-                    let path = &prim.contributors[opinion.contributor as usize].path;
-                    format!("{}:{path}", layer_name(opinion.place, sources))
+                    let path = scene.path_of(&prim.contributors[opinion.contributor as usize]);
+                    format!("{}:{path}", layer_name(opinion.place, &scene.sources))
                 })
                 .collect();
             explain.insert(key, json!(layers));

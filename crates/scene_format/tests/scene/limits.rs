@@ -144,3 +144,119 @@ fn files_that_are_none() {
         ["not-a-file"]
     );
 }
+
+/// Gives the codes of the errors about files of which the first is `root.ron`.
+fn codes_of(files: &[(&str, &str)], limits: Limits) -> Vec<&'static str> {
+    let options = Options { limits, ..options() };
+    let folder = crate::files::folder(files);
+    match crate::files::load_in(folder.path(), &options) {
+        Ok(_) => Vec::new(),
+        Err(errors) => codes(&errors),
+    }
+}
+
+#[test]
+fn long_paths_are_refused() {
+    for names in [65, 100_000] {
+        let path = "/a".repeat(names);
+        for text in [
+            format!("Layer(prims: {{\"/W\": Def(inherits: [\"{path}\"])}})"),
+            format!("Layer(prims: {{\"/W\": Def(references: [\"#{path}\"])}})"),
+            format!("Layer(prims: {{\"/W\": Def(LightLinks: (exclude: [\"{path}\"]))}})"),
+        ] {
+            let errors = load_with(&text, &options()).unwrap_err();
+            assert_eq!(codes(&errors), ["bad-path"], "{names}");
+        }
+    }
+}
+
+/// The deepest chain that the limits allow: each of 62 arcs targets a prim 62 names deep. Tests run on threads with
+/// small stacks.
+#[test]
+fn arcs_and_names_nest_together() {
+    let path: String = (0..62).map(|level| format!("/d{level}")).collect();
+    let files: Vec<(String, String)> = (0..62)
+        .map(|number| {
+            let name = if number == 0 {
+                "root.ron".to_owned()
+            } else {
+                format!("f{number}.ron")
+            };
+            let next = number + 1;
+            let text = if next < 62 {
+                format!("Layer(prims: {{\"/d0\": Def(references: [\"f{next}.ron#{path}\"])}})")
+            } else {
+                format!("Layer(prims: {{\"{path}\": Def(Camera: (fov: 7))}})")
+            };
+            // Each file has the prim that the one before targets.
+            let text = text.replacen("Layer(prims: {", &format!("Layer(prims: {{\"{path}/K\": Over(), "), 1);
+            (name, text)
+        })
+        .collect();
+    let files: Vec<(&str, &str)> = files
+        .iter()
+        .map(|(name, text)| (name.as_str(), text.as_str()))
+        .collect();
+    assert_eq!(codes_of(&files, Limits::default()), [""; 0]);
+}
+
+#[test]
+fn what_multiplies_through_arcs_is_bounded() {
+    let small = || Limits {
+        opinions: 20_000,
+        work: 1_000_000,
+        ..Limits::default()
+    };
+    // Thirteen levels that each reference the next twice.
+    let doubling = |body: &str| {
+        let levels: String = (0..13)
+            .map(|n| format!("\"/P{n}\": Def(references: [\"#/P{next}\", \"#/Q{next}\"]), \"/Q{n}\": Def(references: [\"#/P{next}\"]),", next = n + 1))
+            .collect();
+        format!("Layer(prims: {{{levels} \"/P13\": Def({body}), \"/Q13\": Def()}})")
+    };
+    let targets: String = (0..2_000).map(|n| format!("\"/P13/T{n}\",")).collect();
+    let text = doubling(&format!("LightLinks: (exclude: Edit(prepend: [{targets}]))"));
+    assert_eq!(codes_of(&[("root.ron", &text)], small()), ["too-much-work"]);
+    let children: String = (0..500).map(|n| format!("\"K{n}\": Def(),")).collect();
+    let text = doubling(&format!("children: {{{children}}}"));
+    let found = codes_of(&[("root.ron", &text)], small());
+    assert!(
+        matches!(found[..], ["too-much-work" | "too-many-opinions"]),
+        "{found:?}"
+    );
+    // One field of many samples, referenced often.
+    let samples: String = (0..1_000).map(|n| format!("{n}: 1,")).collect();
+    let many: String = (0..100)
+        .map(|n| format!("\"/R{n}\": Def(references: [\"#/A\"]),"))
+        .collect();
+    let text = format!("Layer(prims: {{{many} \"/A\": Def(Camera: (fov: Samples({{{samples}}})))}})");
+    assert_eq!(codes_of(&[("root.ron", &text)], small()), ["too-many-opinions"]);
+    // A large file below many small ones.
+    let big: String = (0..1_000).map(|n| format!("\"/B{n}\": Def(),")).collect();
+    let big = format!("Layer(prims: {{{big}}})");
+    let mut files: Vec<(String, String)> = vec![("root.ron".into(), String::new()), ("big.ron".into(), big)];
+    let mut arcs = String::new();
+    for n in 0..60 {
+        files.push((
+            format!("f{n}.ron"),
+            "Layer(sublayers: [\"big.ron\"], prims: {\"/A\": Def()})".into(),
+        ));
+        arcs.push_str(&format!("\"/R{n}\": Def(references: [\"f{n}.ron#/A\"]),"));
+    }
+    files[0].1 = format!("Layer(prims: {{{arcs}}})");
+    let files: Vec<(&str, &str)> = files
+        .iter()
+        .map(|(name, text)| (name.as_str(), text.as_str()))
+        .collect();
+    assert_eq!(codes_of(&files, small()), ["too-many-opinions"]);
+}
+
+#[test]
+fn warnings_are_counted_after_fifty() {
+    let many: String = (0..60)
+        .map(|n| format!("\"/W{n}\": Def(inherits: [\"/Nobody{n}x\"]),"))
+        .collect();
+    let scene = load_with(&format!("Layer(prims: {{{many}}})"), &options()).unwrap();
+    assert_eq!(scene.warnings.len(), 51);
+    assert_eq!(scene.warnings[50].message, "and 10 more warnings");
+}
