@@ -170,12 +170,13 @@ fn compose_with_session(library: &mut Library<'_, '_>, layer: LayerId, options: 
         let above = session.layer(library, None);
         let stack = library.build_stack(layer, Some(above));
         let before = library.report.clone();
-        found = Some(compose(library, stack, options.load_payloads));
-        if library.report.is_refused() && !library.is_complete() {
+        let without = compose(library, stack, options.load_payloads);
+        if without.is_cut_short || (library.report.is_refused() && !library.is_complete()) {
             return None;
         }
         // What this scene lacks, the arguments may add.
         library.report.forget_since(before);
+        found = Some(without);
     }
     let above = (!session.is_empty()).then(|| session.layer(library, found.as_ref()));
     let stack = library.build_stack(layer, above);

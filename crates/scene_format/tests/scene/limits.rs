@@ -236,7 +236,7 @@ fn what_multiplies_through_arcs_is_bounded() {
     let big = format!("Layer(prims: {{{big}}})");
     let mut files: Vec<(String, String)> = vec![("root.ron".into(), String::new()), ("big.ron".into(), big)];
     let mut arcs = String::new();
-    for n in 0..60 {
+    for n in 0..100 {
         files.push((
             format!("f{n}.ron"),
             "Layer(sublayers: [\"big.ron\"], prims: {\"/A\": Def()})".into(),
