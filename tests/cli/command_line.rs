@@ -14,6 +14,8 @@ fn help_goes_to_standard_output() {
     Commands:
       run      Render a scene to image files
       check    Load and check a scene, render nothing
+      flatten  Write a composed scene as one layer without arcs
+      explain  Say why a value is what it is: every opinion about it, and why each loser loses
       schema   List what a scene can say: components, fields, types, units, ranges, defaults
       stages   List schedules, sets and systems in the order they run
       profile  Render a scene and print what every system cost
@@ -26,7 +28,9 @@ fn help_goes_to_standard_output() {
 
     Exit codes: 0 done, 1 render or I/O failed, 2 bad command line or bad scene, 130 interrupted (image written).
     ");
-    for command in ["run", "check", "schema", "stages", "profile", "compare"] {
+    for command in [
+        "run", "check", "flatten", "explain", "schema", "stages", "profile", "compare",
+    ] {
         let ran = Folder::new().succeed(&format!("{command} --help"));
         assert!(
             ran.stdout.contains(&format!("Usage: pipeline {command}")),

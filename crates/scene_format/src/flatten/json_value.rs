@@ -1,7 +1,7 @@
 //! Reflected values as JSON.
 
 use bevy_reflect::{PartialReflect, ReflectRef};
-use glam::{DQuat, DVec2, DVec3, DVec4, Quat, UVec2, UVec3, Vec2, Vec3, Vec4};
+use glam::{DMat4, DQuat, DVec2, DVec3, DVec4, Quat, UVec2, UVec3, Vec2, Vec3, Vec4};
 use serde_json::{Map, Value, json};
 
 use crate::relation::{AssetPath, Target, Targets};
@@ -85,6 +85,9 @@ fn leaf(value: &dyn PartialReflect) -> Option<Value> {
     }
     vectors!(Vec2 Vec3 Vec4 Quat DVec2 DVec3 DVec4 DQuat);
     whole_vectors!(UVec2 UVec3);
+    if let Some(matrix) = value.try_downcast_ref::<DMat4>() {
+        return Some(json!(matrix.to_cols_array_2d()));
+    }
     if let Some(text) = value.try_downcast_ref::<String>() {
         return Some(json!(text));
     }

@@ -1,7 +1,7 @@
 //! Reflected values as RON.
 
 use bevy_reflect::{PartialReflect, ReflectRef};
-use glam::{DQuat, DVec2, DVec3, DVec4, Quat, UVec2, UVec3, Vec2, Vec3, Vec4};
+use glam::{DMat4, DQuat, DVec2, DVec3, DVec4, Quat, UVec2, UVec3, Vec2, Vec3, Vec4};
 
 use crate::relation::{AssetPath, Target, Targets};
 
@@ -85,9 +85,18 @@ fn leaf(value: &dyn PartialReflect, asset: &dyn Fn(&str) -> String) -> Option<St
             })*
         };
     }
+    macro_rules! matrices {
+        ($($kind:ty)*) => {
+            $(if let Some(found) = value.try_downcast_ref::<$kind>() {
+                let column = |column: &[_]| format!("({})", join(column.iter().map(ToString::to_string)));
+                return Some(format!("({})", join(found.to_cols_array_2d().iter().map(|c| column(c)))));
+            })*
+        };
+    }
     // The shortest text that gives the same number again.
     plain!(bool f32 f64 u8 u16 u32 u64 usize i8 i16 i32 i64 isize);
     vectors!(Vec2 Vec3 Vec4 Quat DVec2 DVec3 DVec4 DQuat UVec2 UVec3);
+    matrices!(DMat4);
     if let Some(text) = value.try_downcast_ref::<String>() {
         return Some(quoted(text));
     }
