@@ -81,6 +81,8 @@ pub(crate) struct Library<'a, 'r> {
     opinions: usize,
     /// Steps of composition so far: what bounds the time that hostile files can take.
     pub(crate) work: usize,
+    /// Another limit was passed, and reported; there is no sense in going on.
+    is_stopped: bool,
     /// Time spent on reading files so far.
     pub(crate) reading: Duration,
     /// Sublayers that close a circle, and whose they are; each is reported once.
@@ -106,6 +108,7 @@ impl<'a, 'r> Library<'a, 'r> {
             named: HashMap::new(),
             opinions: 0,
             work: 0,
+            is_stopped: false,
             reading: Duration::ZERO,
             closed_cycles: BTreeSet::new(),
             session_selections: HashMap::new(),
@@ -315,10 +318,13 @@ impl<'a, 'r> Library<'a, 'r> {
 
     /// Whether composition takes more steps than a scene may need.
     pub(crate) fn is_exhausted(&self) -> bool {
-        self.work > self.limits.work
+        self.is_stopped || self.work > self.limits.work
     }
 
     pub(crate) fn report_exhaustion(&mut self) {
+        if self.is_stopped {
+            return;
+        }
         let message = format!("composing takes more than {} steps", self.limits.work);
         let error = Diagnostic::error("too-much-work", message)
             .note("long lists times many references, or arcs that multiply; `--limit work=N` allows more");
@@ -361,6 +367,7 @@ impl<'a, 'r> Library<'a, 'r> {
                     "the files and their sublayers have more than {} opinions",
                     self.limits.opinions
                 );
+                self.is_stopped = true;
                 let note = "a file that many others list as their sublayer counts for each of them";
                 self.report
                     .push_once(Diagnostic::error("too-many-opinions", message).note(note));
