@@ -20,9 +20,11 @@ mod library;
 mod list_edits;
 mod mapping;
 mod paths;
+mod reach;
 mod resolve;
 mod spec;
 mod strength;
+mod targets;
 mod values;
 mod variants;
 

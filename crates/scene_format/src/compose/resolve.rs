@@ -5,14 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::checks::variants_of;
 use super::graph::{ArcKind, Graph, NodeId};
 use super::library::{LayerId, Library};
-use super::list_edits::{Combined, EditTrouble};
 use super::mapping::TimeMap;
 use super::paths::{Step, Word};
 use super::spec::Spec;
 use super::values::{clone_samples, clone_value, list_length};
 use crate::diagnostic::Diagnostic;
-use crate::layer::{FieldOpinion, FieldSpec, ListEdit, Spanned, Specifier};
-use crate::relation::{Target, Targets};
+use crate::layer::{FieldOpinion, FieldSpec, Specifier};
 use crate::scene::{ComponentValue, Contributor, FieldState, FieldValue, Opinion, Prim, VariantChoice};
 use crate::schema::{FieldInfo, FieldKind};
 use crate::source::Place;
@@ -35,28 +33,19 @@ pub(crate) struct Resolver {
 
 /// One spec that says something about a prim.
 #[derive(Clone, Copy)]
-struct Contribution {
-    node: NodeId,
-    layer: LayerId,
-    spec: u32,
-    time: TimeMap,
+pub(super) struct Contribution {
+    pub(super) node: NodeId,
+    pub(super) layer: LayerId,
+    pub(super) spec: u32,
+    pub(super) time: TimeMap,
 }
 
 /// A field of a component in a spec.
 #[derive(Clone, Copy)]
-struct FieldPlace {
-    contribution: usize,
-    component: usize,
-    field: usize,
-}
-
-/// A target on its way to the scene's namespace.
-#[derive(Clone)]
-struct CarriedTarget {
-    /// None where the arcs leave it behind.
-    image: Option<String>,
-    written: Spanned<String>,
-    node: NodeId,
+pub(super) struct FieldPlace {
+    pub(super) contribution: usize,
+    pub(super) component: usize,
+    pub(super) field: usize,
 }
 
 /// All opinions about one component, strongest first.
@@ -123,15 +112,15 @@ fn contributions(library: &Library<'_, '_>, graph: &Graph) -> Vec<Contribution> 
 }
 
 /// One prim in the making.
-struct Resolving<'s, 'l, 'a, 'r> {
-    resolver: &'s mut Resolver,
-    library: &'l mut Library<'a, 'r>,
-    graph: &'s Graph,
-    contributions: &'s [Contribution],
+pub(super) struct Resolving<'s, 'l, 'a, 'r> {
+    pub(super) resolver: &'s mut Resolver,
+    pub(super) library: &'l mut Library<'a, 'r>,
+    pub(super) graph: &'s Graph,
+    pub(super) contributions: &'s [Contribution],
     /// Whether the prim is rendered, so that its targets have to exist.
-    counts: bool,
+    pub(super) counts: bool,
     /// Path of the prim.
-    owner: String,
+    pub(super) owner: String,
 }
 
 impl Resolving<'_, '_, '_, '_> {
@@ -306,7 +295,7 @@ impl Resolving<'_, '_, '_, '_> {
         }
     }
 
-    fn field_spec(&self, place: FieldPlace) -> &FieldSpec {
+    pub(super) fn field_spec(&self, place: FieldPlace) -> &FieldSpec {
         let contribution = &self.contributions[place.contribution];
         &self.spec(contribution).components[place.component].fields[place.field]
     }
@@ -363,141 +352,6 @@ impl Resolving<'_, '_, '_, '_> {
             self.library.report.push_once(error);
             FieldState::Blocked
         })
-    }
-
-    /// Combines lists of targets, each item carried to the scene's namespace; none if blocked.
-    fn combine_targets(&mut self, kind: FieldKind, places: &[FieldPlace]) -> Option<Vec<Spanned<String>>> {
-        let is_targets = |place: &&FieldPlace| matches!(self.field_spec(**place).opinion, FieldOpinion::Targets(_));
-        // What is weaker than `Block` is hidden.
-        let visible: Vec<FieldPlace> = places.iter().take_while(is_targets).copied().collect();
-        if visible.is_empty() {
-            return None;
-        }
-        let mut combined = Combined::default();
-        for &place in visible.iter().rev() {
-            let FieldOpinion::Targets(edit) = &self.field_spec(place).opinion else {
-                continue;
-            };
-            let edit = edit.clone();
-            self.library.work += edit.len() * 16;
-            if self.library.is_exhausted() {
-                break;
-            }
-            let edit = self.carry_targets(edit, place.contribution);
-            let key = |item: &CarriedTarget| item.image.clone().ok_or(item.written.place);
-            combined.add(&edit, key);
-        }
-        let is_list = matches!(kind, FieldKind::Targets { .. });
-        for (place, trouble) in combined.troubles(|item| item.written.place) {
-            // To point somewhere else is what a stronger opinion about one target is for.
-            if !is_list && trouble == EditTrouble::Dropped {
-                continue;
-            }
-            let name = self.library.sources.text(place).to_owned();
-            self.library.report.push_once(trouble.warning(&name).at(place));
-        }
-        let mut list = Vec::with_capacity(combined.items.len());
-        for item in combined.items {
-            match item.image {
-                Some(value) => list.push(Spanned {
-                    value,
-                    place: item.written.place,
-                }),
-                None => self.refuse_target(&item),
-            }
-        }
-        Some(list)
-    }
-
-    fn carry_targets(&mut self, edit: ListEdit<Spanned<String>>, contribution: usize) -> ListEdit<CarriedTarget> {
-        let node = self.contributions[contribution].node;
-        let map = &self.graph.node(node).map_to_root;
-        let paths = &mut self.library.paths;
-        let mut carry = |item: &Spanned<String>| {
-            let image = if node == NodeId::ROOT {
-                Some(item.value.clone())
-            } else {
-                let path = paths.intern(&item.value);
-                let image = map.to_target(path, paths);
-                image.map(|image| paths.text(image))
-            };
-            CarriedTarget {
-                image,
-                written: item.clone(),
-                node,
-            }
-        };
-        match edit {
-            ListEdit::Explicit(items) => ListEdit::Explicit(items.iter().map(carry).collect()),
-            ListEdit::Edit {
-                prepend,
-                append,
-                delete,
-            } => ListEdit::Edit {
-                prepend: prepend.iter().map(&mut carry).collect(),
-                append: append.iter().map(&mut carry).collect(),
-                // What has no image cannot be in the list.
-                delete: delete.iter().map(carry).filter(|item| item.image.is_some()).collect(),
-            },
-        }
-    }
-
-    fn refuse_target(&mut self, target: &CarriedTarget) {
-        let message = format!(
-            "`{}` lies outside of what is brought here, so `{}` cannot point to it",
-            target.written.value, self.owner
-        );
-        let mut error = Diagnostic::error("target-outside-reference", message).at(target.written.place);
-        for above in self.graph.up(target.node) {
-            let found = self.graph.node(above);
-            if let Some(place) = found.place {
-                let text = self.library.sources.text(place).to_owned();
-                error = error.also(place, format!("brought by {} {text}", found.kind.word()));
-            }
-        }
-        let error = error.note("move the target below the prim that is brought, or set it from the outside");
-        self.library.report.push_once(error);
-    }
-
-    /// Makes the value of a relationship and remembers what has to exist.
-    fn relationship(
-        &mut self,
-        component: &str,
-        field: &FieldInfo,
-        targets: Option<Vec<Spanned<String>>>,
-        place: Place,
-    ) -> FieldState {
-        let Some(targets) = targets else {
-            return FieldState::Blocked;
-        };
-        if self.counts {
-            self.resolver.targets.extend(targets.iter().map(|target| TargetUse {
-                path: target.value.clone(),
-                place: target.place,
-            }));
-        }
-        let mut paths = targets.into_iter().map(|target| target.value);
-        match field.kind {
-            FieldKind::Targets { optional: false } => FieldState::Constant(Box::new(Targets(paths.collect()))),
-            FieldKind::Targets { optional: true } => {
-                let list: Vec<String> = paths.collect();
-                FieldState::Constant(Box::new((!list.is_empty()).then_some(Targets(list))))
-            }
-            FieldKind::Target { optional } => {
-                let first = paths.next();
-                if paths.next().is_some() {
-                    let message = format!("`{component}.{}` names one prim, not several", field.name);
-                    let error = Diagnostic::error("wrong-type", message).at(place);
-                    self.library.report.push_once(error);
-                }
-                match (first, optional) {
-                    (first, true) => FieldState::Constant(Box::new(first.map(Target))),
-                    (Some(first), false) => FieldState::Constant(Box::new(Target(first))),
-                    (None, false) => FieldState::Blocked,
-                }
-            }
-            FieldKind::Value => FieldState::Blocked,
-        }
     }
 
     /// The variant in force in each set that has one, the strongest place's sets first, with all that
