@@ -260,3 +260,12 @@ fn warnings_are_counted_after_fifty() {
     assert_eq!(scene.warnings.len(), 51);
     assert_eq!(scene.warnings[50].message, "and 10 more warnings");
 }
+
+#[test]
+fn a_file_of_a_gigabyte_is_refused() {
+    let folder = crate::files::folder(&[("root.ron", "Layer(sublayers: [\"huge.ron\"])")]);
+    let huge = std::fs::File::create(folder.path().join("huge.ron")).unwrap();
+    huge.set_len(1 << 30).unwrap();
+    let errors = crate::files::load_in(folder.path(), &options()).unwrap_err();
+    assert_eq!(codes(&errors), ["too-large"]);
+}
