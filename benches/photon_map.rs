@@ -81,10 +81,7 @@ fn ring() -> Scene {
     let instances = shapes
         .iter()
         .enumerate()
-        .map(|(i, (_, placed))| Instance {
-            geometry: i as u32,
-            world_from_object: *placed,
-        })
+        .map(|(i, (_, placed))| Instance::fixed(i as u32, *placed))
         .collect();
     let geometries = shapes.iter().map(|(shape, _)| Geometry::Shape(*shape)).collect();
     let rays = RayScene::build(geometries, instances).expect("a valid scene");

@@ -91,10 +91,7 @@ fn main() -> std::io::Result<()> {
         .iter()
         .map(|i| RtTriangle::from(&triangles[*i as usize]))
         .collect();
-    let instance = Instance {
-        geometry: 0,
-        world_from_object: DAffine3::IDENTITY,
-    };
+    let instance = Instance::fixed(0, DAffine3::IDENTITY);
     let scene = RayScene::build(vec![Geometry::Mesh(mesh.clone())], vec![instance]).map_err(std::io::Error::other)?;
     let mut out = std::io::stdout();
     writeln!(

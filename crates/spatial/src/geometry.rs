@@ -178,11 +178,32 @@ impl Geometry {
     }
 }
 
-/// One placement of a geometry in the world. Its row number is how hits name it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A geometry in the world. Its row number is how hits name it.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
     /// Row of the geometry.
     pub geometry: u32,
-    /// Places it, after the scene was moved to its centre (rebased). Any invertible transform, mirrored ones included.
-    pub world_from_object: DAffine3,
+    /// Where it is, after the scene was moved to its centre (rebased).
+    pub placement: Placement,
+}
+
+/// World from object space, over the time of the shutter. Any invertible transform, mirrored ones included.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Placement {
+    /// The same all the time.
+    Fixed(DAffine3),
+    /// At evenly spaced times from 0 to 1 of the shutter, at least two. In between, every point of the geometry moves in
+    /// a straight line, so turning takes as many as the arc needs to look round.
+    Moving(Arc<[DAffine3]>),
+}
+
+impl Instance {
+    /// An instance that stays where it is.
+    #[must_use]
+    pub fn fixed(geometry: u32, world_from_object: DAffine3) -> Self {
+        Self {
+            geometry,
+            placement: Placement::Fixed(world_from_object),
+        }
+    }
 }

@@ -13,6 +13,8 @@
 //!   precision, so neither the place just left nor a wall a ten-thousandth of the scene away is mistaken.
 //! - **One tree.** A [`RayScene`] is one compressed wide tree (obvhs) over triangles, shapes and instanced meshes alike.
 //!   A mesh placed once lies in it triangle by triangle, a mesh placed a thousand times is stored once.
+//! - **Moving instances.** A [`Placement`] may change over the time of the shutter, and each ray meets it where it is at
+//!   the ray's time.
 //! - **Uniform by world area.** A [`SurfaceSampler`] chooses points of an instance with densities that hold for world
 //!   space whatever the transform, and by solid angle where there is a closed form.
 //! - **Photons.** A [`PhotonTree`] finds the nearest ones to a point.
@@ -20,15 +22,15 @@
 //! Everything is deterministic: the same input yields the same bits for any number of threads, which only share
 //! finished structures.
 //!
-//! Deliberately absent: moving instances (rays carry a time that nothing reads yet), curves, displacement, ray
-//! packets, and rebasing, which the caller does in double precision before instances come here.
+//! Deliberately absent: deforming meshes, curves, displacement, ray packets, and rebasing, which the caller does in
+//! double precision before instances come here.
 //!
 //! ```
 //! use glam::{DAffine3, DVec3, Vec3};
 //! use spatial::{Geometry, Instance, Ray, RayScene, Shape, spawn_origin};
 //!
 //! let sphere = Geometry::Shape(Shape::Sphere { radius: 1.0 });
-//! let instance = Instance { geometry: 0, world_from_object: DAffine3::from_translation(DVec3::Z * -5.0) };
+//! let instance = Instance::fixed(0, DAffine3::from_translation(DVec3::Z * -5.0));
 //! let scene = RayScene::build(vec![sphere], vec![instance])?;
 //!
 //! let ray = Ray::new(Vec3::ZERO, Vec3::NEG_Z);
@@ -65,7 +67,7 @@ mod triangle;
 
 pub use bounds::Bounds;
 pub use error::SpatialError;
-pub use geometry::{Geometry, Instance, Shape, TriangleMesh};
+pub use geometry::{Geometry, Instance, Placement, Shape, TriangleMesh};
 pub use photon_tree::{InvalidPhotonTree, Nearest, NearestScratch, Neighbour, PhotonTree, PhotonTreeError};
 pub use ray::{Ray, RayHit, SurfacePoint, connect, spawn_origin};
 pub use ray_scene::{MOST_DISTANT, RayScene};

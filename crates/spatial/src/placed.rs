@@ -1,19 +1,30 @@
 //! Instances with their transforms both ways, and the rounding that comes with them.
 
-use crate::{Bounds, Instance, SpatialError};
+use crate::{Bounds, Instance, Placement, SpatialError};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
+use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Share of the coordinates that double-precision transforms may be off by, with much to spare.
 const TRANSFORM_ERROR: f64 = 1e-13;
 
-/// An instance with both directions of its transform.
+/// Both directions of the transform of an instance at one time.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
-    pub(crate) geometry: u32,
+pub(crate) struct Pose {
     pub(crate) world_from_object: DAffine3,
     pub(crate) object_from_world: DAffine3,
-    pub(crate) bounds: Bounds,
     pub(crate) mirrored: bool,
+}
+
+/// An instance in the scene.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    pub(crate) geometry: u32,
+    /// Around it at all times.
+    pub(crate) bounds: Bounds,
+    /// When the shutter opens.
+    pub(crate) opening: Pose,
+    motion: Option<Arc<[DAffine3]>>,
 }
 
 /// Transforms with a smaller volume than this share of the box of their axes count as singular.
@@ -21,7 +32,6 @@ const SINGULAR: f64 = 1e-12;
 
 impl Placed {
     pub(crate) fn new(row: usize, instance: &Instance, geometries: usize) -> Result<Self, SpatialError> {
-        let m = instance.world_from_object;
         if instance.geometry as usize >= geometries {
             return Err(SpatialError::UnknownGeometry {
                 instance: row,
@@ -29,23 +39,96 @@ impl Placed {
                 count: geometries,
             });
         }
+        let (opening, motion) = match &instance.placement {
+            Placement::Fixed(m) => (*m, None),
+            Placement::Moving(keys) => {
+                let [first, ..] = **keys else {
+                    return Err(SpatialError::NonFiniteTransform { instance: row });
+                };
+                check_motion(row, keys)?;
+                (first, (keys.len() > 1).then(|| Arc::clone(keys)))
+            }
+        };
+        Ok(Self {
+            geometry: instance.geometry,
+            bounds: Bounds::EMPTY,
+            opening: Pose::new(row, &opening)?,
+            motion,
+        })
+    }
+
+    /// True when it moves while the shutter is open.
+    pub(crate) fn moves(&self) -> bool {
+        self.motion.is_some()
+    }
+
+    /// Where it is at a time in [0, 1] of the shutter.
+    #[inline]
+    pub(crate) fn at(&self, time: f32) -> Cow<'_, Pose> {
+        match &self.motion {
+            None => Cow::Borrowed(&self.opening),
+            Some(keys) => Cow::Owned(Pose::unchecked(between(keys, time))),
+        }
+    }
+
+    /// The transforms between which all points move in straight lines.
+    pub(crate) fn keys(&self) -> &[DAffine3] {
+        match &self.motion {
+            None => std::slice::from_ref(&self.opening.world_from_object),
+            Some(keys) => keys,
+        }
+    }
+}
+
+/// Checks every key, and that the instance is not turned inside out on the way from one to the next.
+fn check_motion(row: usize, keys: &[DAffine3]) -> Result<(), SpatialError> {
+    let first = Pose::new(row, &keys[0])?;
+    for pair in keys.windows(2) {
+        for share in [0.25, 0.5, 0.75, 1.0] {
+            if Pose::new(row, &mix(&pair[0], &pair[1], share))?.mirrored != first.mirrored {
+                return Err(SpatialError::SingularTransform { instance: row });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The transform between evenly spaced keys.
+fn between(keys: &[DAffine3], time: f32) -> DAffine3 {
+    let last = keys.len() - 1;
+    let along = f64::from(time.clamp(0.0, 1.0)) * last as f64;
+    let index = (along as usize).min(last - 1);
+    mix(&keys[index], &keys[index + 1], along - index as f64)
+}
+
+fn mix(a: &DAffine3, b: &DAffine3, share: f64) -> DAffine3 {
+    DAffine3 {
+        matrix3: a.matrix3 * (1.0 - share) + b.matrix3 * share,
+        translation: a.translation * (1.0 - share) + b.translation * share,
+    }
+}
+
+impl Pose {
+    fn new(row: usize, m: &DAffine3) -> Result<Self, SpatialError> {
         if !m.is_finite() {
             return Err(SpatialError::NonFiniteTransform { instance: row });
         }
         let axes = m.matrix3;
         let volume = axes.determinant();
-        let object_from_world = m.inverse();
         let most = axes.x_axis.length() * axes.y_axis.length() * axes.z_axis.length();
-        if !(volume.abs() > SINGULAR * most) || !object_from_world.is_finite() {
+        let pose = Self::unchecked(*m);
+        if !(volume.abs() > SINGULAR * most) || !pose.object_from_world.is_finite() {
             return Err(SpatialError::SingularTransform { instance: row });
         }
-        Ok(Self {
-            geometry: instance.geometry,
+        Ok(pose)
+    }
+
+    fn unchecked(m: DAffine3) -> Self {
+        Self {
             world_from_object: m,
-            object_from_world,
-            bounds: Bounds::EMPTY,
-            mirrored: volume < 0.0,
-        })
+            object_from_world: m.inverse(),
+            mirrored: m.matrix3.determinant() < 0.0,
+        }
     }
 
     /// World-space vertex of a mesh. Rounded the same way wherever it is needed, so that all agree on the triangle.

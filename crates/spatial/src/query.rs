@@ -34,7 +34,7 @@ impl RayScene {
             if slot.is_triangle() {
                 slot.intersect(&prepared.triangles, nodes.tmax)
             } else {
-                self.intersect_other(slot, &prepared, nodes.tmax, &mut inner)
+                self.intersect_other(slot, &prepared, ray.time, nodes.tmax, &mut inner)
             }
         });
         if !hit {
@@ -66,7 +66,7 @@ impl RayScene {
             let slot = &self.slots[id];
             if slot.is_triangle() {
                 slot.intersect(&prepared.triangles, nodes.tmax)
-            } else if self.occluded_by_other(slot, &prepared, nodes.tmax) {
+            } else if self.occluded_by_other(slot, &prepared, ray.time, nodes.tmax) {
                 0.0
             } else {
                 f32::INFINITY
@@ -76,20 +76,21 @@ impl RayScene {
 
     /// Takes the ray into the space of the instance in a slot.
     #[inline]
-    fn object_ray(&self, slot: &Slot, world: &TreeRay) -> (&Prepared, DVec3, DVec3) {
+    fn object_ray(&self, slot: &Slot, world: &TreeRay, time: f32) -> (&Prepared, DVec3, DVec3) {
         let instance = &self.instances[slot.instance() as usize];
+        let pose = instance.at(time);
         let (o, d) = world.triangles.exact();
         (
             &self.geometries[instance.geometry as usize],
-            instance.object_from_world.transform_point3(o),
-            instance.object_from_world.transform_vector3(d),
+            pose.object_from_world.transform_point3(o),
+            pose.object_from_world.transform_vector3(d),
         )
     }
 
     /// Meets the shape or instanced mesh in a slot; distances are scaled.
     #[inline(never)]
-    fn intersect_other(&self, slot: &Slot, world: &TreeRay, t_max: f32, inner: &mut Inner) -> f32 {
-        let (geometry, o, d) = self.object_ray(slot, world);
+    fn intersect_other(&self, slot: &Slot, world: &TreeRay, time: f32, t_max: f32, inner: &mut Inner) -> f32 {
+        let (geometry, o, d) = self.object_ray(slot, world, time);
         let limit = f64::from(t_max / self.scale);
         match geometry {
             Prepared::Solid(solid) => {
@@ -112,8 +113,8 @@ impl RayScene {
 
     /// Whether the shape or instanced mesh in a slot is met within the scaled distance `t_max`.
     #[inline(never)]
-    fn occluded_by_other(&self, slot: &Slot, world: &TreeRay, t_max: f32) -> bool {
-        let (geometry, o, d) = self.object_ray(slot, world);
+    fn occluded_by_other(&self, slot: &Slot, world: &TreeRay, time: f32, t_max: f32) -> bool {
+        let (geometry, o, d) = self.object_ray(slot, world, time);
         let limit = f64::from(t_max / self.scale);
         match geometry {
             // Rounded as in `intersect_other`, so that both queries agree on what is within the limit.

@@ -9,7 +9,7 @@ pub struct Ray {
     pub direction: Vec3,
     /// Only hits nearer than this count, metres; infinity for all.
     pub t_max: f32,
-    /// When it is shot, in [0, 1] of the shutter. Reserved for moving instances; nothing reads it yet.
+    /// When it is shot, in [0, 1] of the shutter: where moving instances are.
     pub time: f32,
 }
 
@@ -66,6 +66,8 @@ pub struct SurfacePoint {
     pub instance: u32,
     /// Triangle of the mesh, or face of the shape.
     pub primitive: u32,
+    /// When it is there, in [0, 1] of the shutter.
+    pub time: f32,
 }
 
 /// Moves a surface point off its surface, to the side that `direction` goes to, so that a ray from there cannot meet

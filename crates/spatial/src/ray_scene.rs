@@ -6,6 +6,7 @@ use crate::shapes::Solid;
 use crate::tree::{MAX_DEPTH, Tree, triangle_bounds};
 use crate::triangle::Slot;
 use crate::{Bounds, Geometry, Instance, SpatialError, TriangleMesh};
+use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
 /// Coordinates beyond this are refused, metres: squares and products of areas overflow in single precision long before
@@ -15,8 +16,8 @@ pub const MOST_DISTANT: f32 = 1e15;
 /// Geometry prepared for ray queries.
 ///
 /// One tree in world space holds triangles, analytic shapes and instanced meshes side by side. A mesh with a single
-/// instance lies in it triangle by triangle; a mesh with several is stored once, in a tree of its own, and rays are
-/// taken into its space. Queries are read-only and lock-free; share the scene between threads.
+/// instance lies in it triangle by triangle; a mesh with several, or one that moves, is stored once, in a tree of its own,
+/// and rays are taken into its space. Queries are read-only and lock-free; share the scene between threads.
 ///
 /// Deterministic: the same input yields the same bits.
 #[derive(Debug)]
@@ -36,7 +37,7 @@ pub(crate) enum Prepared {
     Solid(Arc<Solid>),
     Mesh {
         mesh: Arc<TriangleMesh>,
-        /// Present when several instances share the mesh.
+        /// Present when several instances share the mesh, or one that moves has it.
         tree: Option<Box<MeshTree>>,
     },
 }
@@ -60,6 +61,10 @@ impl RayScene {
             placed.push(Placed::new(row, instance, geometries.len())?);
             uses[instance.geometry as usize] += 1;
         }
+        for instance in placed.iter().filter(|instance| instance.moves()) {
+            // A moving mesh stays in its own space, in a tree of its own.
+            uses[instance.geometry as usize] += 1;
+        }
         let prepared = prepare(geometries, &uses)?;
         let mut slots = Vec::new();
         let mut boxes = Vec::new();
@@ -71,22 +76,23 @@ impl RayScene {
                 bounds
             };
             instance.bounds = match &prepared[instance.geometry as usize] {
-                Prepared::Solid(solid) => {
-                    let (low, high) = solid.bounds(&instance.world_from_object);
-                    add(Slot::other(id), Bounds::around(low, high))
-                }
+                Prepared::Solid(solid) => add(Slot::other(id), around(instance.keys(), |m| Some(solid.bounds(m)))),
                 Prepared::Mesh { mesh, tree: None } => {
                     let mut all = Bounds::EMPTY;
                     for (t, triangle) in mesh.triangles.iter().enumerate() {
-                        let v = triangle.map(|v| instance.world_vertex(mesh.positions[v as usize]));
+                        let v = triangle.map(|v| instance.opening.world_vertex(mesh.positions[v as usize]));
                         all = all.union(&add(Slot::triangle(v, id, t as u32), triangle_bounds(v)));
                     }
                     all
                 }
-                Prepared::Mesh { tree: Some(tree), .. } => match tree.bounds(&instance.world_from_object) {
-                    Some((low, high)) => add(Slot::other(id), Bounds::around(low, high)),
-                    None => Bounds::EMPTY,
-                },
+                Prepared::Mesh { tree: Some(tree), .. } => {
+                    let bounds = around(instance.keys(), |m| tree.bounds(m));
+                    if bounds.is_empty() {
+                        bounds
+                    } else {
+                        add(Slot::other(id), bounds)
+                    }
+                }
             };
             if !instance.bounds.is_empty() && !instance.bounds.lies_within(MOST_DISTANT) {
                 return Err(SpatialError::Overflow { instance: row });
@@ -111,7 +117,7 @@ impl RayScene {
         self.tree.bounds
     }
 
-    /// Box around one instance, world space; empty for a mesh without triangles. Tight, but for a mesh that several
+    /// Box around one instance, world space, over the time of the shutter; empty for a mesh without triangles. Tight, but for a mesh that several
     /// instances share: its box may be a few per cent larger.
     ///
     /// # Panics
@@ -165,6 +171,14 @@ impl RayScene {
         }
         Ok(())
     }
+}
+
+/// A box around a geometry under each of some transforms. As points move in straight lines from one to the next, it holds
+/// all that is between.
+fn around(keys: &[DAffine3], bounds: impl Fn(&DAffine3) -> Option<(DVec3, DVec3)>) -> Bounds {
+    keys.iter()
+        .filter_map(|m| bounds(m))
+        .fold(Bounds::EMPTY, |all, (low, high)| all.union(&Bounds::around(low, high)))
 }
 
 fn prepare(geometries: Vec<Geometry>, uses: &[u32]) -> Result<Vec<Prepared>, SpatialError> {

@@ -1,6 +1,6 @@
 //! From a hit to the point on the surface: position refined, error bounded, normals, texture coordinates.
 
-use crate::placed::{Placed, round_point};
+use crate::placed::{Pose, round_point};
 use crate::ray_scene::Prepared;
 use crate::{Ray, RayHit, RayScene, SurfacePoint, TriangleMesh};
 use glam::{DVec3, Vec2, Vec3};
@@ -14,20 +14,20 @@ pub(crate) struct WorldTriangle {
 
 impl WorldTriangle {
     /// - `rounded`: whether the tree holds world-space vertices, rounded to single precision.
-    pub(crate) fn new(instance: &Placed, mesh: &TriangleMesh, triangle: u32, rounded: bool) -> Self {
+    pub(crate) fn new(pose: &Pose, mesh: &TriangleMesh, triangle: u32, rounded: bool) -> Self {
         let vertices = mesh.triangles[triangle as usize].map(|v| {
             let p = mesh.positions[v as usize];
             if rounded {
-                instance.world_vertex(p).as_dvec3()
+                pose.world_vertex(p).as_dvec3()
             } else {
-                instance.world_from_object.transform_point3(p.as_dvec3())
+                pose.world_from_object.transform_point3(p.as_dvec3())
             }
         });
         let [a, b, c] = vertices;
         let n = (b - a).cross(c - a);
         Self {
             vertices,
-            area_vector: if instance.mirrored { -n } else { n },
+            area_vector: if pose.mirrored { -n } else { n },
         }
     }
 
@@ -63,14 +63,14 @@ pub(crate) fn mesh_uv(mesh: &TriangleMesh, triangle: u32, uv: Vec2) -> Vec2 {
 ///
 /// A triangle whose normals as a whole point backward has its winding against them: they are turned around. Where
 /// interpolation alone carries a normal past the horizon, it is bent back to it.
-fn mesh_normal(instance: &Placed, mesh: &TriangleMesh, triangle: u32, uv: Vec2, ng: Vec3) -> Vec3 {
+fn mesh_normal(pose: &Pose, mesh: &TriangleMesh, triangle: u32, uv: Vec2, ng: Vec3) -> Vec3 {
     let Some(normals) = &mesh.normals else { return ng };
     let [a, b, c] = mesh.triangles[triangle as usize].map(|v| normals[v as usize].as_dvec3().normalize_or_zero());
     let ng = ng.as_dvec3();
     let weights = uv.as_dvec2();
     let blend = a * (1.0 - weights.x - weights.y) + b * weights.x + c * weights.y;
-    let facing = instance.world_normal(a + b + c).dot(ng);
-    let world = instance.world_normal(if facing < 0.0 { -blend } else { blend });
+    let facing = pose.world_normal(a + b + c).dot(ng);
+    let world = pose.world_normal(if facing < 0.0 { -blend } else { blend });
     let Some(ns) = (world / world.abs().max_element()).try_normalize() else {
         return ng.as_vec3();
     };
@@ -98,19 +98,20 @@ impl RayScene {
     #[must_use]
     pub fn surface(&self, ray: &Ray, hit: &RayHit) -> SurfacePoint {
         let instance = &self.instances[hit.instance as usize];
+        let pose = &*instance.at(ray.time);
         let (p, error, ng, ns, uv) = match &self.geometries[instance.geometry as usize] {
             Prepared::Solid(solid) => {
                 let along = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(hit.t);
-                let local = solid.project(instance.object_from_world.transform_point3(along), hit.primitive);
-                let (p, error) = instance.world_point(local.p);
-                let n = unit(instance.world_normal(local.n));
+                let local = solid.project(pose.object_from_world.transform_point3(along), hit.primitive);
+                let (p, error) = pose.world_point(local.p);
+                let n = unit(pose.world_normal(local.n));
                 (p, error, n, n, local.uv)
             }
             Prepared::Mesh { mesh, tree } => {
-                let triangle = WorldTriangle::new(instance, mesh, hit.primitive, tree.is_none());
+                let triangle = WorldTriangle::new(pose, mesh, hit.primitive, tree.is_none());
                 let (p, error) = triangle.point(hit.uv);
                 let ng = triangle.normal();
-                let ns = mesh_normal(instance, mesh, hit.primitive, hit.uv, ng);
+                let ns = mesh_normal(pose, mesh, hit.primitive, hit.uv, ng);
                 (p, error, ng, ns, mesh_uv(mesh, hit.primitive, hit.uv))
             }
         };
@@ -122,10 +123,12 @@ impl RayScene {
             uv,
             instance: hit.instance,
             primitive: hit.primitive,
+            time: ray.time,
         }
     }
 
-    /// Area of an instance in world space, m², its transform included; both sides of a surface count once.
+    /// Area of an instance in world space, m², its transform when the shutter opens included; both sides of a surface
+    /// count once.
     ///
     /// # Panics
     ///
@@ -135,11 +138,16 @@ impl RayScene {
         let placed = &self.instances[instance as usize];
         match &self.geometries[placed.geometry as usize] {
             Prepared::Solid(solid) => {
-                let cofactor = placed.cofactor();
+                let cofactor = placed.opening.cofactor();
                 (0..solid.faces()).map(|face| solid.face_area(face, &cofactor)).sum()
             }
             Prepared::Mesh { mesh, tree } => (0..mesh.triangles.len() as u32)
-                .map(|t| WorldTriangle::new(placed, mesh, t, tree.is_none()).area_vector.length() * 0.5)
+                .map(|t| {
+                    WorldTriangle::new(&placed.opening, mesh, t, tree.is_none())
+                        .area_vector
+                        .length()
+                        * 0.5
+                })
                 .sum(),
         }
     }

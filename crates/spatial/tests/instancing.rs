@@ -24,12 +24,7 @@ fn instanced_and_flattened_meshes_give_the_same_hits() {
         .collect();
     let instanced = place(Geometry::Mesh(m.clone()), &transforms);
     // One geometry each: nothing is shared, so all triangles lie in the world.
-    let instances = (0..12)
-        .map(|i| Instance {
-            geometry: i,
-            world_from_object: transforms[i as usize],
-        })
-        .collect();
+    let instances = (0..12).map(|i| Instance::fixed(i, transforms[i as usize])).collect();
     let flat = RayScene::build(vec![Geometry::Mesh(m); 12], instances).unwrap();
     instanced.validate().unwrap();
     flat.validate().unwrap();
@@ -90,10 +85,7 @@ fn the_same_input_gives_the_same_bits() {
         let m = Geometry::Mesh(Arc::new(icosphere(4)));
         let list = vec![m, Geometry::Shape(Shape::Sphere { radius: 0.5 })];
         let instances = (0..30)
-            .map(|i| Instance {
-                geometry: i % 2,
-                world_from_object: transform(&stream("same", i), &Kind::Stretched, 0.5, 3.0),
-            })
+            .map(|i| Instance::fixed(i % 2, transform(&stream("same", i), &Kind::Stretched, 0.5, 3.0)))
             .collect();
         RayScene::build(list, instances).unwrap()
     };
@@ -109,10 +101,7 @@ fn the_same_input_gives_the_same_bits() {
 #[test]
 fn what_cannot_be_traced_is_refused_with_its_row() {
     let sphere = || Geometry::Shape(Shape::Sphere { radius: 1.0 });
-    let at = |m| Instance {
-        geometry: 0,
-        world_from_object: m,
-    };
+    let at = |m| Instance::fixed(0, m);
     let build = |g: Geometry, m: DAffine3| RayScene::build(vec![g], vec![at(DAffine3::IDENTITY), at(m)]).unwrap_err();
     let flat = DAffine3::from_scale(DVec3::new(1.0, 1.0, 0.0));
     assert_eq!(build(sphere(), flat), SpatialError::SingularTransform { instance: 1 });
@@ -128,10 +117,7 @@ fn what_cannot_be_traced_is_refused_with_its_row() {
     // Single precision holds these coordinates, but not the areas of the boxes.
     let large = DAffine3::from_scale(DVec3::splat(1e19));
     assert_eq!(build(sphere(), large), SpatialError::Overflow { instance: 1 });
-    let unknown = Instance {
-        geometry: 7,
-        world_from_object: DAffine3::IDENTITY,
-    };
+    let unknown = Instance::fixed(7, DAffine3::IDENTITY);
     let error = RayScene::build(vec![sphere()], vec![unknown]).unwrap_err();
     assert_eq!(error.to_string(), "instance 0: geometry 7 does not exist, there are 1");
     let broken = |f: &dyn Fn(&mut TriangleMesh)| {
@@ -245,10 +231,7 @@ fn limits_are_open_intervals() {
 #[test]
 fn connected_points_see_each_other_unless_something_is_between() {
     let list = vec![Geometry::Shape(Shape::Sphere { radius: 1.0 }), mesh(cube())];
-    let place = |geometry, x: f64| Instance {
-        geometry,
-        world_from_object: DAffine3::from_translation(DVec3::X * x),
-    };
+    let place = |geometry, x: f64| Instance::fixed(geometry, DAffine3::from_translation(DVec3::X * x));
     for gap in [3.0, 30.0, 3000.0] {
         let scene = RayScene::build(list.clone(), vec![place(0, 0.0), place(1, gap)]).unwrap();
         let blocked = RayScene::build(list.clone(), vec![place(0, 0.0), place(1, gap), place(1, gap * 0.7)]).unwrap();
@@ -256,7 +239,7 @@ fn connected_points_see_each_other_unless_something_is_between() {
         let mut edges = 0;
         for i in 0..5000 {
             let s = stream("connect", i);
-            let [a, b] = [0, 1].map(|k| samplers[k as usize].sample_area(s.draw_2d(0, k)));
+            let [a, b] = [0, 1].map(|k| samplers[k as usize].sample_area(s.draw_2d(0, k), 0.0));
             let between = b.p - a.p;
             if between.dot(a.ng) <= 0.0 || between.dot(b.ng) >= 0.0 {
                 continue;

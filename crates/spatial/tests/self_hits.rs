@@ -161,10 +161,7 @@ fn thin_gaps_hold_light() {
         ] {
             let m = transform(&stream("walls", 1), &Kind::Similar, size, offset);
             let gap = DAffine3::from_translation(m.matrix3.z_axis * 1.2e-4) * m;
-            let place = |m: DAffine3, geometry| Instance {
-                geometry,
-                world_from_object: m,
-            };
+            let place = |m: DAffine3, geometry| Instance::fixed(geometry, m);
             for geometries in [1_u32, 2] {
                 let list = vec![walls.clone(); geometries as usize];
                 let scene = RayScene::build(list, vec![place(m, 0), place(gap, geometries - 1)]).unwrap();

@@ -300,7 +300,7 @@ fn bounds_are_tight() {
         let sampler = spatial::SurfaceSampler::new(&scene, 0).unwrap();
         let mut reached = spatial::Bounds::EMPTY;
         for i in 0..20_000 {
-            let p = sampler.sample_area(stream("bounds", i).draw_2d(0, 0)).p;
+            let p = sampler.sample_area(stream("bounds", i).draw_2d(0, 0), 0.0).p;
             assert!(p.cmpge(b.min - 1e-6).all() && p.cmple(b.max + 1e-6).all());
             reached = reached.extend(p);
         }

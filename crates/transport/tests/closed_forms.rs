@@ -38,10 +38,7 @@ fn scene(shapes: &[(Shape, DAffine3, Material)], lights: Vec<LightSource>) -> Sc
     let instances = shapes
         .iter()
         .enumerate()
-        .map(|(i, (_, placed, _))| Instance {
-            geometry: i as u32,
-            world_from_object: *placed,
-        })
+        .map(|(i, (_, placed, _))| Instance::fixed(i as u32, *placed))
         .collect();
     let rays = RayScene::build(geometries, instances).expect("valid scene");
     let materials = shapes.iter().map(|(.., material)| *material).collect();

@@ -1,6 +1,6 @@
 //! Uniform choice in the cone that a sphere subtends.
 
-use crate::placed::Placed;
+use crate::placed::Pose;
 use glam::{DVec2, DVec3};
 use radiometry::math;
 use std::f64::consts::TAU;
@@ -16,8 +16,8 @@ pub(super) struct Ball {
 const TOLERANCE: f64 = 1e-6;
 
 /// The factor by which a transform scales, if it scales all directions alike and keeps angles.
-pub(super) fn uniform_scale(instance: &Placed) -> Option<f64> {
-    let a = &instance.world_from_object.matrix3;
+pub(super) fn uniform_scale(pose: &Pose) -> Option<f64> {
+    let a = &pose.world_from_object.matrix3;
     let scale_sq = a.x_axis.length_squared();
     let alike = [a.y_axis, a.z_axis]
         .iter()
@@ -30,9 +30,9 @@ pub(super) fn uniform_scale(instance: &Placed) -> Option<f64> {
 
 impl Ball {
     /// `None` when the transform makes it an ellipsoid.
-    pub(super) fn new(instance: &Placed, radius: f64) -> Option<Self> {
-        uniform_scale(instance).map(|scale| Self {
-            center: instance.world_from_object.translation,
+    pub(super) fn new(pose: &Pose, radius: f64) -> Option<Self> {
+        uniform_scale(pose).map(|scale| Self {
+            center: pose.world_from_object.translation,
             radius: radius * scale,
         })
     }

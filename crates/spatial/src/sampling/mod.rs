@@ -13,10 +13,10 @@ mod triangles;
 #[cfg(test)]
 mod tests;
 
-use crate::placed::Placed;
+use crate::placed::{Placed, Pose};
 use crate::ray_scene::Prepared;
 use crate::shapes::Solid;
-use crate::surface::unit;
+use crate::surface::{WorldTriangle, unit};
 use crate::{RayScene, SurfacePoint};
 use cone::Ball;
 use glam::{DVec3, Vec2, Vec3};
@@ -95,33 +95,30 @@ impl SurfaceSampler {
         if !(area > 0.0 && area.is_finite()) {
             return None;
         }
-        let placed = scene.instances[instance as usize];
+        let placed = scene.instances[instance as usize].clone();
         let (surface, aim) = match &scene.geometries[placed.geometry as usize] {
             Prepared::Solid(solid) => {
-                let table = Arc::new(Table::new(solid, &placed)?);
-                let aim = match &**solid {
-                    Solid::Sphere { radius } => Ball::new(&placed, *radius).map(Aim::Ball),
-                    Solid::Quad { half } => Rectangle::of_quad(&placed, *half).map(Aim::Rectangle),
-                    _ => None,
-                };
+                let table = Arc::new(Table::new(solid, &placed.opening)?);
+                let aim = Aim::at_solid(solid, &placed.opening);
                 let solid = Arc::clone(solid);
                 (Surface::Solid { solid, table }, aim)
             }
             Prepared::Mesh { mesh, tree } => {
-                let triangles = Triangles::new(Arc::clone(mesh), &placed, tree.is_none());
-                let aim = triangles.rectangle().map(Aim::Rectangle);
+                let triangles = Triangles::new(Arc::clone(mesh), &placed.opening, tree.is_none());
+                let aim = triangles.rectangle().filter(|_| !placed.moves());
+                let aim = aim.map_or(Aim::Area, Aim::Rectangle);
                 (Surface::Triangles(Arc::new(triangles)), aim)
             }
         };
         Some(Self {
             instance: placed,
             surface,
-            aim: aim.unwrap_or(Aim::Area),
+            aim,
             area,
         })
     }
 
-    /// Area in world space, m².
+    /// Area in world space when the shutter opens, m².
     #[must_use]
     pub fn area(&self) -> f64 {
         self.area
@@ -132,19 +129,25 @@ impl SurfaceSampler {
     /// Exactly uniform on flat faces and meshes, and on curved faces of revolution and spheres under transforms that
     /// keep angles. On curved faces under other transforms, and on a torus, the choice is uniform over cells of a table
     /// (64 × 64 or 256 × 1) and uniform in parameters within a cell: uniform per area to within the variation across a
-    /// cell, with the exact density in `pdf_area`.
+    /// cell, with the exact density in `pdf_area`. On an instance that changes its size while the shutter is open, the
+    /// choice is uniform by its area at the opening.
     ///
     /// - `u`: in [0, 1)².
+    /// - `time`: in [0, 1] of the shutter.
     #[must_use]
-    pub fn sample_area(&self, u: Vec2) -> SurfaceSample {
+    pub fn sample_area(&self, u: Vec2, time: f32) -> SurfaceSample {
+        self.sample_area_of(&self.instance.at(time), u)
+    }
+
+    fn sample_area_of(&self, pose: &Pose, u: Vec2) -> SurfaceSample {
         match &self.surface {
             Surface::Solid { solid, table } => {
                 let (face, parameters) = table.sample(u);
-                self.solid_sample(solid, table, face, solid.point(face, parameters).0)
+                self.solid_sample(pose, solid, table, face, solid.point(face, parameters).0)
             }
             Surface::Triangles(triangles) => {
                 let (triangle, uv) = triangles.sample(u);
-                self.triangle_sample(triangles, triangle, uv)
+                self.triangle_sample(pose, triangles, triangle, uv)
             }
         }
     }
@@ -152,38 +155,43 @@ impl SurfaceSampler {
     /// Chooses a point as seen from `from`: uniformly in solid angle for spheres and rectangles, else by area.
     ///
     /// Spheres under transforms that keep angles, from outside: the cone that they subtend. Quads that stay rectangles,
-    /// and meshes of two triangles that form one, between 10⁻³ and 6.2 steradians: Ureña et al., "An Area-Preserving
-    /// Parametrization for Spherical Rectangles", EGSR 2013.
+    /// and meshes of two triangles that form one and do not move, between 10⁻³ and 6.2 steradians: Ureña et al., "An
+    /// Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013.
     ///
     /// - `from`: world space, metres.
     /// - `u`: in [0, 1)².
+    /// - `time`: in [0, 1] of the shutter.
     /// - returns `None` where the chosen point is seen edge on or coincides with `from`.
     #[must_use]
-    pub fn sample_toward(&self, from: Vec3, u: Vec2) -> Option<DirectionSample> {
-        let sample = match (&self.aim, &self.surface) {
+    pub fn sample_toward(&self, from: Vec3, u: Vec2, time: f32) -> Option<DirectionSample> {
+        let pose = &*self.instance.at(time);
+        let aim = self.aim_at(pose);
+        let sample = match (&aim, &self.surface) {
             (Aim::Ball(ball), Surface::Solid { solid, table }) => match ball.sample(from.as_dvec3(), u.as_dvec2()) {
                 Some(p) => {
-                    let local = self.instance.object_from_world.transform_point3(p);
-                    self.solid_sample(solid, table, 0, local)
+                    let local = pose.object_from_world.transform_point3(p);
+                    self.solid_sample(pose, solid, table, 0, local)
                 }
-                None => self.sample_area(u),
+                None => self.sample_area_of(pose, u),
             },
             (Aim::Rectangle(rectangle), surface) => match rectangle.sample(from.as_dvec3(), u.as_dvec2()) {
                 Some(share) => match surface {
-                    Surface::Solid { solid, table } => self.solid_sample(solid, table, 0, solid.point(0, share).0),
+                    Surface::Solid { solid, table } => {
+                        self.solid_sample(pose, solid, table, 0, solid.point(0, share).0)
+                    }
                     Surface::Triangles(triangles) => {
                         let (triangle, uv) = triangles.in_rectangle(share);
-                        self.triangle_sample(triangles, triangle, uv)
+                        self.triangle_sample(pose, triangles, triangle, uv)
                     }
                 },
-                None => self.sample_area(u),
+                None => self.sample_area_of(pose, u),
             },
-            _ => self.sample_area(u),
+            _ => self.sample_area_of(pose, u),
         };
         let between = sample.p.as_dvec3() - from.as_dvec3();
         let distance = between.length();
         let wi = (between / distance).as_vec3();
-        let pdf = self.pdf(from, sample.p, sample.ng, sample.primitive);
+        let pdf = self.pdf(from, sample.p, sample.ng, &aim, || sample.pdf_area);
         (pdf > 0.0 && pdf.is_finite() && wi.is_finite()).then_some(DirectionSample {
             sample,
             wi,
@@ -198,11 +206,21 @@ impl SurfaceSampler {
     /// - returns infinity for a point seen edge on.
     #[must_use]
     pub fn pdf_toward(&self, from: Vec3, point: &SurfacePoint) -> f32 {
-        self.pdf(from, point.p, point.ng, point.primitive)
+        let pose = &*self.instance.at(point.time);
+        self.pdf(from, point.p, point.ng, &self.aim_at(pose), || {
+            self.pdf_area(pose, point.p, point.primitive)
+        })
     }
 
-    fn pdf(&self, from: Vec3, p: Vec3, ng: Vec3, primitive: u32) -> f32 {
-        let solid_angle = match &self.aim {
+    fn aim_at(&self, pose: &Pose) -> Aim {
+        match &self.surface {
+            Surface::Solid { solid, .. } if self.instance.moves() => Aim::at_solid(solid, pose),
+            _ => self.aim,
+        }
+    }
+
+    fn pdf(&self, from: Vec3, p: Vec3, ng: Vec3, aim: &Aim, pdf_area: impl FnOnce() -> f32) -> f32 {
+        let solid_angle = match aim {
             Aim::Area => None,
             Aim::Ball(ball) => ball.solid_angle(from.as_dvec3()),
             Aim::Rectangle(rectangle) => rectangle.solid_angle(from.as_dvec3()),
@@ -216,37 +234,53 @@ impl SurfaceSampler {
             return 0.0;
         }
         let cos = between.dot(ng.as_dvec3()) / distance_sq.sqrt();
-        warp::solid_angle_pdf(self.pdf_area(p, primitive), distance_sq as f32, cos as f32)
+        warp::solid_angle_pdf(pdf_area(), distance_sq as f32, cos as f32)
     }
 
     /// Density of [`SurfaceSampler::sample_area`] at a point, per m².
-    fn pdf_area(&self, p: Vec3, primitive: u32) -> f32 {
+    fn pdf_area(&self, pose: &Pose, p: Vec3, primitive: u32) -> f32 {
         match &self.surface {
-            Surface::Solid { solid, table } => {
-                let local = |p: Vec3| self.instance.object_from_world.transform_point3(p.as_dvec3());
-                table.pdf_area(solid, primitive, || local(p))
+            Surface::Solid { solid, table } => self.solid_pdf(pose, solid, table, primitive, p),
+            Surface::Triangles(triangles) => {
+                self.triangle_pdf(triangles, primitive, || triangles.world(pose, primitive))
             }
-            Surface::Triangles(_) => (1.0 / self.area) as f32,
         }
     }
 
-    fn solid_sample(&self, solid: &Solid, table: &Table, face: u32, near: DVec3) -> SurfaceSample {
+    fn solid_pdf(&self, pose: &Pose, solid: &Solid, table: &Table, face: u32, p: Vec3) -> f32 {
+        let local = || pose.object_from_world.transform_point3(p.as_dvec3());
+        let pdf = table.pdf_area(solid, face, local);
+        if !self.instance.moves() {
+            return pdf;
+        }
+        let normal = solid.project(local(), face).n;
+        let area = |pose: &Pose| (pose.cofactor() * normal).length();
+        (f64::from(pdf) * area(&self.instance.opening) / area(pose)) as f32
+    }
+
+    fn triangle_pdf(&self, triangles: &Triangles, triangle: u32, now: impl FnOnce() -> WorldTriangle) -> f32 {
+        if !self.instance.moves() {
+            return (1.0 / self.area) as f32;
+        }
+        let opening = triangles.world(&self.instance.opening, triangle);
+        (opening.area_vector.length() / (now().area_vector.length() * self.area)) as f32
+    }
+
+    fn solid_sample(&self, pose: &Pose, solid: &Solid, table: &Table, face: u32, near: DVec3) -> SurfaceSample {
         let local = solid.project(near, face);
-        let (p, error) = self.instance.world_point(local.p);
+        let (p, error) = pose.world_point(local.p);
         SurfaceSample {
             p,
             error,
-            ng: unit(self.instance.world_normal(local.n)),
+            ng: unit(pose.world_normal(local.n)),
             uv: local.uv,
             primitive: face,
-            pdf_area: table.pdf_area(solid, face, || {
-                self.instance.object_from_world.transform_point3(p.as_dvec3())
-            }),
+            pdf_area: self.solid_pdf(pose, solid, table, face, p),
         }
     }
 
-    fn triangle_sample(&self, triangles: &Triangles, triangle: u32, uv: Vec2) -> SurfaceSample {
-        let shape = triangles.world(&self.instance, triangle);
+    fn triangle_sample(&self, pose: &Pose, triangles: &Triangles, triangle: u32, uv: Vec2) -> SurfaceSample {
+        let shape = triangles.world(pose, triangle);
         let (p, error) = shape.point(uv);
         SurfaceSample {
             p,
@@ -254,7 +288,18 @@ impl SurfaceSampler {
             ng: shape.normal(),
             uv: triangles.uv(triangle, uv),
             primitive: triangle,
-            pdf_area: (1.0 / self.area) as f32,
+            pdf_area: self.triangle_pdf(triangles, triangle, || shape),
         }
+    }
+}
+
+impl Aim {
+    fn at_solid(solid: &Solid, pose: &Pose) -> Self {
+        match solid {
+            Solid::Sphere { radius } => Ball::new(pose, *radius).map(Self::Ball),
+            Solid::Quad { half } => Rectangle::of_quad(pose, *half).map(Self::Rectangle),
+            _ => None,
+        }
+        .unwrap_or(Self::Area)
     }
 }

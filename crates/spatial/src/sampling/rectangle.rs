@@ -1,6 +1,6 @@
 //! Uniform choice in the solid angle of a rectangle.
 
-use crate::placed::Placed;
+use crate::placed::Pose;
 use glam::{DVec2, DVec3};
 use radiometry::math;
 use std::f64::consts::TAU;
@@ -47,8 +47,8 @@ impl Rectangle {
         })
     }
 
-    pub(super) fn of_quad(instance: &Placed, half: DVec2) -> Option<Self> {
-        let m = &instance.world_from_object;
+    pub(super) fn of_quad(pose: &Pose, half: DVec2) -> Option<Self> {
+        let m = &pose.world_from_object;
         let corner = m.transform_point3(DVec3::new(-half.x, -half.y, 0.0));
         Self::new(
             corner,

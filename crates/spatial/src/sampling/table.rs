@@ -1,7 +1,7 @@
 //! Choice of a point of a shape by world area.
 
 use super::cone::uniform_scale;
-use crate::placed::Placed;
+use crate::placed::Pose;
 use crate::shapes::{Solid, Spread};
 use glam::{DMat3, DVec2, DVec3, Vec2};
 use radiometry::Distribution;
@@ -32,9 +32,9 @@ struct Face {
 
 impl Table {
     /// `None` when there is no area.
-    pub(super) fn new(solid: &Solid, instance: &Placed) -> Option<Self> {
-        let cofactor = instance.cofactor();
-        let keeps_angles = uniform_scale(instance).is_some();
+    pub(super) fn new(solid: &Solid, pose: &Pose) -> Option<Self> {
+        let cofactor = pose.cofactor();
+        let keeps_angles = uniform_scale(pose).is_some();
         let mut table = Self {
             faces: Vec::new(),
             rows: Distribution::default(),

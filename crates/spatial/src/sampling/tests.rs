@@ -79,10 +79,7 @@ fn transforms() -> [DAffine3; 3] {
 }
 
 fn scene(geometry: &Geometry, m: DAffine3) -> RayScene {
-    let instance = Instance {
-        geometry: 0,
-        world_from_object: m,
-    };
+    let instance = Instance::fixed(0, m);
     RayScene::build(vec![geometry.clone()], vec![instance]).unwrap()
 }
 
@@ -107,7 +104,7 @@ fn cases() -> Vec<(String, DAffine3, RayScene, SurfaceSampler)> {
 fn samples_lie_on_the_surface_and_face_outward() {
     for (name, _, scene, sampler) in cases() {
         for i in 0..500 {
-            let s = sampler.sample_area(numbers("on", i).draw_2d(0, 0));
+            let s = sampler.sample_area(numbers("on", i).draw_2d(0, 0), 0.0);
             // A ray from just outside meets the sample where it says it is.
             let probe = Ray::new(s.p + s.ng * 1e-3, -s.ng);
             let Some(hit) = scene.intersect(&probe) else { continue };
@@ -132,7 +129,7 @@ fn area_densities_integrate_to_the_area() {
     for (name, _, scene, sampler) in cases() {
         let n = 1 << 14;
         let mean = (0..n)
-            .map(|i| 1.0 / f64::from(sampler.sample_area(numbers("area", i).draw_2d(0, 0)).pdf_area))
+            .map(|i| 1.0 / f64::from(sampler.sample_area(numbers("area", i).draw_2d(0, 0), 0.0).pdf_area))
             .sum::<f64>()
             / f64::from(n);
         assert!(
@@ -170,7 +167,7 @@ fn samples_are_spread_by_world_area() {
                 ray.origin = crate::spawn_origin(p.p, p.error, p.ng, d);
             }
             // Weighted by 1/pdf, so that densities that are not quite uniform are held to what they say.
-            let a = sampler.sample_area(s.draw_2d(0, 2));
+            let a = sampler.sample_area(s.draw_2d(0, 2), 0.0);
             chosen[cell(a.p, a.primitive)] += 1.0 / f64::from(a.pdf_area);
         }
         let (all, weight) = (f64::from(crossed.iter().sum::<u32>()), chosen.iter().sum::<f64>());
@@ -207,7 +204,7 @@ fn both_sides_of_multiple_importance_sampling_agree() {
         for from in viewpoints(&m) {
             let (mut agree, mut compared) = (0, 0);
             for i in 0..500 {
-                let Some(d) = sampler.sample_toward(from, numbers("mis", i).draw_2d(0, 0)) else {
+                let Some(d) = sampler.sample_toward(from, numbers("mis", i).draw_2d(0, 0), 0.0) else {
                     continue;
                 };
                 let s = &d.sample;
@@ -221,6 +218,7 @@ fn both_sides_of_multiple_importance_sampling_agree() {
                     uv: s.uv,
                     instance: 0,
                     primitive: s.primitive,
+                    time: 0.0,
                 };
                 assert_eq!(d.pdf, sampler.pdf_toward(from, &same), "{name}");
                 let ray = Ray::new(from, d.wi);
@@ -262,7 +260,7 @@ fn direction_densities_integrate_to_the_solid_angle() {
             let (mut sum, mut squares, mut hits) = (0.0, 0.0, 0);
             for i in 0..n {
                 let s = numbers("solid angle", i);
-                if let Some(d) = sampler.sample_toward(from, s.draw_2d(0, 0)) {
+                if let Some(d) = sampler.sample_toward(from, s.draw_2d(0, 0), 0.0) {
                     let ray = Ray::new(from, d.wi);
                     let visible = scene.intersect(&ray).is_none_or(|hit| hit.t > d.distance * 0.9999);
                     let estimate = if visible { 1.0 / f64::from(d.pdf) } else { 0.0 };
@@ -309,11 +307,11 @@ fn special_shapes_are_uniform_in_solid_angle() {
         let scene = scene(&geometry, m);
         let sampler = SurfaceSampler::new(&scene, 0).unwrap();
         let from = m.transform_point3(view).as_vec3();
-        let first = sampler.sample_toward(from, Vec2::splat(0.5)).unwrap().pdf;
+        let first = sampler.sample_toward(from, Vec2::splat(0.5), 0.0).unwrap().pdf;
         let mut seen = [0_u32; 2];
         for i in 0..1000 {
             let d = sampler
-                .sample_toward(from, numbers("special", i).draw_2d(0, 0))
+                .sample_toward(from, numbers("special", i).draw_2d(0, 0), 0.0)
                 .unwrap();
             assert_eq!(d.pdf, first);
             seen[d.sample.primitive as usize] += 1;

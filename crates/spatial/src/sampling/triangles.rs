@@ -2,7 +2,7 @@
 
 use super::rectangle::Rectangle;
 use crate::TriangleMesh;
-use crate::placed::Placed;
+use crate::placed::Pose;
 use crate::surface::{WorldTriangle, mesh_uv};
 use glam::{DVec2, DVec3, Vec2};
 use radiometry::{Distribution, warp};
@@ -28,10 +28,10 @@ struct Halves {
 }
 
 impl Triangles {
-    pub(super) fn new(mesh: Arc<TriangleMesh>, instance: &Placed, rounded: bool) -> Self {
-        let area = |t| WorldTriangle::new(instance, &mesh, t, rounded).area_vector.length();
+    pub(super) fn new(mesh: Arc<TriangleMesh>, pose: &Pose, rounded: bool) -> Self {
+        let area = |t| WorldTriangle::new(pose, &mesh, t, rounded).area_vector.length();
         let by_area = Distribution::new((0..mesh.triangles.len() as u32).map(area));
-        let halves = Halves::new(&mesh, instance, rounded);
+        let halves = Halves::new(&mesh, pose, rounded);
         Self {
             mesh,
             by_area,
@@ -44,8 +44,8 @@ impl Triangles {
         self.halves.as_ref().map(|h| h.rectangle)
     }
 
-    pub(super) fn world(&self, instance: &Placed, triangle: u32) -> WorldTriangle {
-        WorldTriangle::new(instance, &self.mesh, triangle, self.rounded)
+    pub(super) fn world(&self, pose: &Pose, triangle: u32) -> WorldTriangle {
+        WorldTriangle::new(pose, &self.mesh, triangle, self.rounded)
     }
 
     pub(super) fn uv(&self, triangle: u32, uv: Vec2) -> Vec2 {
@@ -82,11 +82,11 @@ impl Triangles {
 }
 
 impl Halves {
-    fn new(mesh: &TriangleMesh, instance: &Placed, rounded: bool) -> Option<Self> {
+    fn new(mesh: &TriangleMesh, pose: &Pose, rounded: bool) -> Option<Self> {
         if mesh.triangles.len() != 2 {
             return None;
         }
-        let [first, second] = [0, 1].map(|t| WorldTriangle::new(instance, mesh, t, rounded));
+        let [first, second] = [0, 1].map(|t| WorldTriangle::new(pose, mesh, t, rounded));
         if !(first.area_vector.dot(second.area_vector) > 0.0) {
             return None;
         }

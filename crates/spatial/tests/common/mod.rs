@@ -90,13 +90,7 @@ pub fn transform(s: &SampleStream, kind: &Kind, scale: f64, offset: f64) -> DAff
 }
 
 pub fn place(geometry: Geometry, transforms: &[DAffine3]) -> RayScene {
-    let instances = transforms
-        .iter()
-        .map(|m| Instance {
-            geometry: 0,
-            world_from_object: *m,
-        })
-        .collect();
+    let instances = transforms.iter().map(|m| Instance::fixed(0, *m)).collect();
     RayScene::build(vec![geometry], instances).expect("the geometry of a test")
 }
 
