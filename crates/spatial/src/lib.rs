@@ -71,4 +71,4 @@ pub use geometry::{Geometry, Instance, Placement, Shape, TriangleMesh};
 pub use photon_tree::{InvalidPhotonTree, Nearest, NearestScratch, Neighbour, PhotonTree, PhotonTreeError};
 pub use ray::{Ray, RayHit, SurfacePoint, connect, spawn_origin};
 pub use ray_scene::{MOST_DISTANT, RayScene};
-pub use sampling::{DirectionSample, SurfaceSample, SurfaceSampler};
+pub use sampling::{DirectionSample, SurfacePiece, SurfaceSample, SurfaceSampler};

@@ -2,7 +2,7 @@
 
 use crate::placed::{Pose, round_point};
 use crate::ray_scene::Prepared;
-use crate::{Ray, RayHit, RayScene, SurfacePoint, TriangleMesh};
+use crate::{Bounds, Ray, RayHit, RayScene, SurfacePoint, TriangleMesh};
 use glam::{DVec3, Vec2, Vec3};
 
 /// A triangle of an instance, in world space and double precision.
@@ -38,6 +38,12 @@ impl WorldTriangle {
         let p = a + (b - a) * uv.x + (c - a) * uv.y;
         let magnitude = a.abs().max(b.abs()).max(c.abs()).max_element();
         round_point(p, magnitude)
+    }
+
+    pub(crate) fn bounds(&self) -> Bounds {
+        self.vertices
+            .iter()
+            .fold(Bounds::EMPTY, |all, v| all.union(&Bounds::around(*v, *v)))
     }
 
     /// Unit normal; of a triangle without an area, an arbitrary one.

@@ -127,7 +127,8 @@ fn densities_hold_at_every_time() {
             // Both sides of multiple importance sampling agree.
             let from = Vec3::new(1.0, 4.0, 2.0);
             for i in 0..200 {
-                let Some(d) = sampler.sample_toward(from, stream("toward", i).draw_2d(0, 0), time) else {
+                let piece = i % sampler.piece_count();
+                let Some(d) = sampler.sample_toward(from, piece, stream("toward", i).draw_2d(0, 0), time) else {
                     continue;
                 };
                 let point = SurfacePoint {

@@ -17,7 +17,7 @@ use crate::placed::{Placed, Pose};
 use crate::ray_scene::Prepared;
 use crate::shapes::Solid;
 use crate::surface::{WorldTriangle, unit};
-use crate::{RayScene, SurfacePoint};
+use crate::{Bounds, RayScene, SurfacePoint};
 use cone::Ball;
 use glam::{DVec3, Vec2, Vec3};
 use radiometry::warp;
@@ -54,6 +54,19 @@ pub struct DirectionSample {
     pub distance: f32,
     /// Density of the direction `wi` per solid angle.
     pub pdf: f32,
+}
+
+/// A part of a surface that is chosen as a whole before a point of it is: a triangle, or all of a shape or a rectangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePiece {
+    /// Box around it, world space, over the time of the shutter.
+    pub bounds: Bounds,
+    /// World area when the shutter opens, m².
+    pub area: f64,
+    /// Unit vector in the middle of its outward normals.
+    pub axis: Vec3,
+    /// Least cosine between its normals and `axis`; −1 when they may be anywhere.
+    pub cos_spread: f32,
 }
 
 /// Chooses points on the surface of one instance. Independent of the scene that it was built from.
@@ -152,46 +165,112 @@ impl SurfaceSampler {
         }
     }
 
-    /// Chooses a point as seen from `from`: uniformly in solid angle for spheres and rectangles, else by area.
+    /// How many pieces there are: the triangles of a mesh, or 1 for a shape and for two triangles that form a rectangle.
+    #[must_use]
+    pub fn piece_count(&self) -> u32 {
+        match (&self.surface, &self.aim) {
+            (Surface::Triangles(triangles), Aim::Area) => triangles.count(),
+            _ => 1,
+        }
+    }
+
+    /// The piece that a primitive, a triangle of the mesh or a face of the shape, belongs to.
+    #[must_use]
+    pub fn piece_of(&self, primitive: u32) -> u32 {
+        if self.piece_count() == 1 { 0 } else { primitive }
+    }
+
+    /// Where a piece lies, how large it is, and where it faces.
+    #[must_use]
+    pub fn piece(&self, piece: u32) -> SurfacePiece {
+        let anywhere = SurfacePiece {
+            bounds: self.instance.bounds,
+            area: self.area,
+            axis: Vec3::Z,
+            cos_spread: -1.0,
+        };
+        match &self.surface {
+            Surface::Triangles(triangles) => {
+                let triangle = triangles.world(&self.instance.opening, piece);
+                let one = self.piece_count() > 1;
+                let area = if one {
+                    0.5 * triangle.area_vector.length()
+                } else {
+                    self.area
+                };
+                if self.instance.moves() {
+                    return SurfacePiece { area, ..anywhere };
+                }
+                SurfacePiece {
+                    bounds: if one { triangle.bounds() } else { self.instance.bounds },
+                    area,
+                    axis: triangle.normal(),
+                    cos_spread: 1.0,
+                }
+            }
+            Surface::Solid { solid, .. } => match &**solid {
+                Solid::Quad { .. } | Solid::Disc { .. } if !self.instance.moves() => SurfacePiece {
+                    axis: unit(self.instance.opening.world_normal(DVec3::Z)),
+                    cos_spread: 1.0,
+                    ..anywhere
+                },
+                _ => anywhere,
+            },
+        }
+    }
+
+    /// Chooses a point of a piece as seen from `from`: uniformly in solid angle for spheres and rectangles, else by area.
     ///
     /// Spheres under transforms that keep angles, from outside: the cone that they subtend. Quads that stay rectangles,
     /// and meshes of two triangles that form one and do not move, between 10⁻³ and 6.2 steradians: Ureña et al., "An
     /// Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013.
     ///
     /// - `from`: world space, metres.
+    /// - `piece`: below [`SurfaceSampler::piece_count`].
     /// - `u`: in [0, 1)².
     /// - `time`: in [0, 1] of the shutter.
     /// - returns `None` where the chosen point is seen edge on or coincides with `from`.
     #[must_use]
-    pub fn sample_toward(&self, from: Vec3, u: Vec2, time: f32) -> Option<DirectionSample> {
+    pub fn sample_toward(&self, from: Vec3, piece: u32, u: Vec2, time: f32) -> Option<DirectionSample> {
         let pose = &*self.instance.at(time);
         let aim = self.aim_at(pose);
-        let sample = match (&aim, &self.surface) {
-            (Aim::Ball(ball), Surface::Solid { solid, table }) => match ball.sample(from.as_dvec3(), u.as_dvec2()) {
-                Some(p) => {
-                    let local = pose.object_from_world.transform_point3(p);
-                    self.solid_sample(pose, solid, table, 0, local)
+        let sample = match &self.surface {
+            Surface::Solid { solid, table } => {
+                let (face, near) = match &aim {
+                    Aim::Ball(ball) => ball
+                        .sample(from.as_dvec3(), u.as_dvec2())
+                        .map(|p| (0, pose.object_from_world.transform_point3(p))),
+                    Aim::Rectangle(rectangle) => rectangle
+                        .sample(from.as_dvec3(), u.as_dvec2())
+                        .map(|share| (0, solid.point(0, share).0)),
+                    Aim::Area => None,
                 }
-                None => self.sample_area_of(pose, u),
-            },
-            (Aim::Rectangle(rectangle), surface) => match rectangle.sample(from.as_dvec3(), u.as_dvec2()) {
-                Some(share) => match surface {
-                    Surface::Solid { solid, table } => {
-                        self.solid_sample(pose, solid, table, 0, solid.point(0, share).0)
-                    }
-                    Surface::Triangles(triangles) => {
-                        let (triangle, uv) = triangles.in_rectangle(share);
-                        self.triangle_sample(pose, triangles, triangle, uv)
-                    }
-                },
-                None => self.sample_area_of(pose, u),
-            },
-            _ => self.sample_area_of(pose, u),
+                .unwrap_or_else(|| {
+                    let (face, parameters) = table.sample(u);
+                    (face, solid.point(face, parameters).0)
+                });
+                self.solid_sample(pose, solid, table, face, near)
+            }
+            Surface::Triangles(triangles) => {
+                let share = match &aim {
+                    Aim::Rectangle(rectangle) => rectangle.sample(from.as_dvec3(), u.as_dvec2()),
+                    _ => None,
+                };
+                let (triangle, uv) = match (share, aim) {
+                    (Some(share), _) => triangles.in_rectangle(share),
+                    (None, Aim::Area) => (piece, triangles::sample_triangle(u)),
+                    (None, _) => triangles.sample(u),
+                };
+                self.triangle_sample(pose, triangles, triangle, uv)
+            }
         };
         let between = sample.p.as_dvec3() - from.as_dvec3();
         let distance = between.length();
         let wi = (between / distance).as_vec3();
-        let pdf = self.pdf(from, sample.p, sample.ng, &aim, || sample.pdf_area);
+        let pdf = self.pdf(from, sample.p, sample.ng, &aim, || match &self.surface {
+            Surface::Solid { .. } => sample.pdf_area,
+            Surface::Triangles(triangles) => self.piece_pdf(pose, triangles, sample.primitive),
+        });
         (pdf > 0.0 && pdf.is_finite() && wi.is_finite()).then_some(DirectionSample {
             sample,
             wi,
@@ -201,15 +280,24 @@ impl SurfaceSampler {
     }
 
     /// Density per solid angle with which [`SurfaceSampler::sample_toward`] chooses the direction from `from` to a
-    /// point of this instance, found for instance by a ray.
+    /// point of this instance, found for instance by a ray, among those of its piece.
     ///
     /// - returns infinity for a point seen edge on.
     #[must_use]
     pub fn pdf_toward(&self, from: Vec3, point: &SurfacePoint) -> f32 {
         let pose = &*self.instance.at(point.time);
-        self.pdf(from, point.p, point.ng, &self.aim_at(pose), || {
-            self.pdf_area(pose, point.p, point.primitive)
+        self.pdf(from, point.p, point.ng, &self.aim_at(pose), || match &self.surface {
+            Surface::Solid { solid, table } => self.solid_pdf(pose, solid, table, point.primitive, point.p),
+            Surface::Triangles(triangles) => self.piece_pdf(pose, triangles, point.primitive),
         })
+    }
+
+    /// Density per m² of a uniform choice in the piece of a triangle.
+    fn piece_pdf(&self, pose: &Pose, triangles: &Triangles, triangle: u32) -> f32 {
+        match self.aim {
+            Aim::Area => (2.0 / triangles.world(pose, triangle).area_vector.length()) as f32,
+            _ => (1.0 / self.area) as f32,
+        }
     }
 
     fn aim_at(&self, pose: &Pose) -> Aim {
@@ -238,15 +326,6 @@ impl SurfaceSampler {
     }
 
     /// Density of [`SurfaceSampler::sample_area`] at a point, per m².
-    fn pdf_area(&self, pose: &Pose, p: Vec3, primitive: u32) -> f32 {
-        match &self.surface {
-            Surface::Solid { solid, table } => self.solid_pdf(pose, solid, table, primitive, p),
-            Surface::Triangles(triangles) => {
-                self.triangle_pdf(triangles, primitive, || triangles.world(pose, primitive))
-            }
-        }
-    }
-
     fn solid_pdf(&self, pose: &Pose, solid: &Solid, table: &Table, face: u32, p: Vec3) -> f32 {
         let local = || pose.object_from_world.transform_point3(p.as_dvec3());
         let pdf = table.pdf_area(solid, face, local);

@@ -78,6 +78,17 @@ fn transforms() -> [DAffine3; 3] {
     ]
 }
 
+/// Chooses a piece evenly, and a direction to it; the density is that of both.
+fn toward(sampler: &SurfaceSampler, from: Vec3, i: u32, key: &'static str) -> Option<DirectionSample> {
+    let stream = numbers(key, i);
+    let pieces = sampler.piece_count();
+    let piece = ((stream.draw_1d(0, 7) * pieces as f32) as u32).min(pieces - 1);
+    let mut d = sampler.sample_toward(from, piece, stream.draw_2d(0, 0), 0.0)?;
+    assert_eq!(sampler.piece_of(d.sample.primitive), piece);
+    d.pdf /= pieces as f32;
+    Some(d)
+}
+
 fn scene(geometry: &Geometry, m: DAffine3) -> RayScene {
     let instance = Instance::fixed(0, m);
     RayScene::build(vec![geometry.clone()], vec![instance]).unwrap()
@@ -204,9 +215,10 @@ fn both_sides_of_multiple_importance_sampling_agree() {
         for from in viewpoints(&m) {
             let (mut agree, mut compared) = (0, 0);
             for i in 0..500 {
-                let Some(d) = sampler.sample_toward(from, numbers("mis", i).draw_2d(0, 0), 0.0) else {
+                let Some(d) = toward(&sampler, from, i, "mis") else {
                     continue;
                 };
+                let pieces = sampler.piece_count() as f32;
                 let s = &d.sample;
                 assert!((d.wi.length() - 1.0).abs() < 1e-5 && d.pdf > 0.0);
                 assert!((from + d.wi * d.distance - s.p).length() < 1e-5 * (1.0 + d.distance));
@@ -220,14 +232,14 @@ fn both_sides_of_multiple_importance_sampling_agree() {
                     primitive: s.primitive,
                     time: 0.0,
                 };
-                assert_eq!(d.pdf, sampler.pdf_toward(from, &same), "{name}");
+                assert_eq!(d.pdf, sampler.pdf_toward(from, &same) / pieces, "{name}");
                 let ray = Ray::new(from, d.wi);
                 let Some(hit) = scene.intersect(&ray) else { continue };
                 let found = scene.surface(&ray, &hit);
                 // Hidden points and grazing views apart, the ray finds the same point.
                 if found.primitive == s.primitive && (found.p - s.p).length() < 1e-4 * d.distance.min(0.1) {
                     compared += 1;
-                    let pdf = sampler.pdf_toward(from, &found);
+                    let pdf = sampler.pdf_toward(from, &found) / pieces;
                     let cos = d.wi.dot(s.ng).abs();
                     if cos > 0.05 {
                         // Where the point falls into another cell of a table, densities differ by a cell's share.
@@ -260,7 +272,7 @@ fn direction_densities_integrate_to_the_solid_angle() {
             let (mut sum, mut squares, mut hits) = (0.0, 0.0, 0);
             for i in 0..n {
                 let s = numbers("solid angle", i);
-                if let Some(d) = sampler.sample_toward(from, s.draw_2d(0, 0), 0.0) {
+                if let Some(d) = toward(&sampler, from, i, "solid angle") {
                     let ray = Ray::new(from, d.wi);
                     let visible = scene.intersect(&ray).is_none_or(|hit| hit.t > d.distance * 0.9999);
                     let estimate = if visible { 1.0 / f64::from(d.pdf) } else { 0.0 };
@@ -307,11 +319,11 @@ fn special_shapes_are_uniform_in_solid_angle() {
         let scene = scene(&geometry, m);
         let sampler = SurfaceSampler::new(&scene, 0).unwrap();
         let from = m.transform_point3(view).as_vec3();
-        let first = sampler.sample_toward(from, Vec2::splat(0.5), 0.0).unwrap().pdf;
+        let first = sampler.sample_toward(from, 0, Vec2::splat(0.5), 0.0).unwrap().pdf;
         let mut seen = [0_u32; 2];
         for i in 0..1000 {
             let d = sampler
-                .sample_toward(from, numbers("special", i).draw_2d(0, 0), 0.0)
+                .sample_toward(from, 0, numbers("special", i).draw_2d(0, 0), 0.0)
                 .unwrap();
             assert_eq!(d.pdf, first);
             seen[d.sample.primitive as usize] += 1;
@@ -323,6 +335,23 @@ fn special_shapes_are_uniform_in_solid_angle() {
         }
         if let Geometry::Mesh(_) = geometry {
             assert!(seen.iter().all(|n| *n > 100), "{seen:?}");
+        }
+    }
+}
+
+/// Pieces add up to the surface, each point lies in the box of its piece, and its normal within its spread.
+#[test]
+fn pieces_hold_their_points_and_normals() {
+    for (name, _, _, sampler) in cases() {
+        let pieces: Vec<SurfacePiece> = (0..sampler.piece_count()).map(|i| sampler.piece(i)).collect();
+        let area: f64 = pieces.iter().map(|piece| piece.area).sum();
+        assert!((area - sampler.area()).abs() < 1e-6 * area, "{name}");
+        for i in 0..500 {
+            let s = sampler.sample_area(numbers("piece", i).draw_2d(0, 0), 0.0);
+            let piece = &pieces[sampler.piece_of(s.primitive) as usize];
+            let outside = s.p - s.p.clamp(piece.bounds.min - 1e-5, piece.bounds.max + 1e-5);
+            assert_eq!(outside, Vec3::ZERO, "{name}");
+            assert!(s.ng.dot(piece.axis) >= piece.cos_spread - 1e-5, "{name}");
         }
     }
 }

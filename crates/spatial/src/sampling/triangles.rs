@@ -27,6 +27,12 @@ struct Halves {
     corners: [usize; 2],
 }
 
+/// Weights of the second and third vertex of a uniformly chosen point of a triangle.
+pub(super) fn sample_triangle(u: Vec2) -> Vec2 {
+    let b = warp::sample_triangle(u);
+    Vec2::new(b.y, (1.0 - b.x - b.y).max(0.0))
+}
+
 impl Triangles {
     pub(super) fn new(mesh: Arc<TriangleMesh>, pose: &Pose, rounded: bool) -> Self {
         let area = |t| WorldTriangle::new(pose, &mesh, t, rounded).area_vector.length();
@@ -38,6 +44,10 @@ impl Triangles {
             rounded,
             halves,
         }
+    }
+
+    pub(super) fn count(&self) -> u32 {
+        self.mesh.triangles.len() as u32
     }
 
     pub(super) fn rectangle(&self) -> Option<Rectangle> {
@@ -55,8 +65,7 @@ impl Triangles {
     /// Chooses a triangle and the weights of its second and third vertex.
     pub(super) fn sample(&self, u: Vec2) -> (u32, Vec2) {
         let (triangle, _, rest) = self.by_area.sample(u.x).unwrap_or((0, 1.0, u.x));
-        let b = warp::sample_triangle(Vec2::new(rest, u.y));
-        (triangle as u32, Vec2::new(b.y, (1.0 - b.x - b.y).max(0.0)))
+        (triangle as u32, sample_triangle(Vec2::new(rest, u.y)))
     }
 
     /// Triangle and weights at these shares of the rectangle's sides.
