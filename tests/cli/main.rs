@@ -11,6 +11,7 @@ mod comparing;
 mod disks;
 mod interruption;
 mod layering;
+mod lens_and_shutter;
 mod listing;
 mod program;
 mod rendering;

@@ -12,8 +12,6 @@
 mod fit;
 mod lens;
 mod sample;
-#[cfg(test)]
-mod tests;
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;

@@ -13,8 +13,6 @@
 
 mod open;
 mod sample;
-#[cfg(test)]
-mod tests;
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;

@@ -1,4 +1,5 @@
 use super::{BALL, CAMERA, RENDER, SKY, errors, prepare, refusal, seen_at, warnings, with_rest};
+use glam::Vec3;
 use pipeline_data::TransportScene;
 use radiometry::Rgb;
 use std::f32::consts::PI;
@@ -63,11 +64,37 @@ fn point_lights_shine_all_around() {
 }
 
 #[test]
+fn spots_and_suns_have_the_power_and_direction_that_they_say() {
+    let lights = |prim: &str| {
+        let app = prepare(&[BALL, &format!("\"/Light\": Def({prim}),\n"), CAMERA, RENDER]);
+        assert_eq!(errors(&app), "");
+        app
+    };
+    let power = |prim: &str| lights(prim).world().resource::<TransportScene>().0.lights.power();
+    assert!((power("SpotLight: (power: (5, 5, 5), inner_angle: 3, outer_angle: 40)") - 5.0).abs() < 1e-5);
+    let (inner, outer) = (20_f64.to_radians().cos(), 30_f64.to_radians().cos());
+    let all = std::f64::consts::PI * (2.0 - inner - outer);
+    assert!((power("SpotLight: (intensity: (1, 1, 1))") - all).abs() < 1e-5);
+    let narrow = refusal("\"/S\": Def(SpotLight: (inner_angle: 40)),\n");
+    assert!(
+        narrow.contains("error[out-of-range]: `SpotLight.inner_angle` of 40"),
+        "{narrow}"
+    );
+    // A sun in the south looks down: it is seen the other way.
+    let app = lights("DistantLight: (angle: 2), Transform: (rotate: (-60, 0, 0))");
+    let lights = &app.world().resource::<TransportScene>().0.lights;
+    let sun = Vec3::new(0.0, 60_f32.to_radians().sin(), 60_f32.to_radians().cos());
+    assert_eq!(lights.escaped(sun, 0.0).count(), 1);
+    assert_eq!(lights.escaped(-sun, 0.0).count(), 0);
+}
+
+#[test]
 fn the_environment_is_scaled() {
     let sky = "\"/Sky\": Def(EnvironmentLight: (radiance: (1, 2, 3), scale: 0.5)),\n";
     let app = prepare(&[BALL, sky, CAMERA, RENDER]);
     assert_eq!(errors(&app), "");
-    let (radiance, _) = app.world().resource::<TransportScene>().0.lights.environment().unwrap();
+    let lights = &app.world().resource::<TransportScene>().0.lights;
+    let (radiance, _) = lights.escaped(Vec3::X, 0.0).next().unwrap();
     assert_eq!(radiance, Rgb::new(0.5, 1.0, 1.5));
 }
 

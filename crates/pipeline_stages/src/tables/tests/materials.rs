@@ -132,10 +132,6 @@ fn materials_that_cannot_be_are_refused_with_their_place() {
             "write `Dielectric: (thin: true)`",
         ),
         (
-            "\"/A\": Def(Sphere: (), Dielectric: (dispersion: 30)),\n",
-            "error[not-supported-yet]: `Dielectric.dispersion`",
-        ),
-        (
             "\"/A\": Def(Sphere: (), Plastic: (), Principled: ()),\n",
             "error[two-materials]: `/A`",
         ),
