@@ -11,7 +11,7 @@ Conductor       | metal ? | eta ? | k ? | f0 ? | reflectance (1, 1, 1) | roughne
 Cuboid          | size (1, 1, 1)
 Cylinder        | radius 1 | height 1 | capped true
 Dielectric      | ior 1.5 | roughness 0 | energy_compensation true | tint (1, 1, 1) | absorption (0, 0, 0) | dispersion ? | thin false
-Diffuse         | albedo (0.5, 0.5, 0.5)
+Diffuse         | albedo (0.5, 0.5, 0.5) | albedo_texture ?
 Disc            | radius 1
 Emission        | radiance (1, 1, 1) | power ? | two_sided false
 EnvironmentLight | file ? | radiance (1, 1, 1) | scale 1
@@ -19,10 +19,10 @@ Film            | resolution (512, 512) | filter BlackmanHarris | filter_radius 
 LightTransport  | direct SampleLights | specular Trace | caustic PhotonMap | indirect PathTrace | specular_alpha 0.05
 LookAt          | target - | up (0, 1, 0)
 MaterialBinding | target -
-Mesh            | file - | mesh ? | primitive ? | smooth true
+Mesh            | file - | mesh ? | primitive ? | smooth true | colors true
 Plastic         | albedo (0.5, 0.5, 0.5) | ior 1.5 | roughness 0.1
 PointLight      | power (1, 1, 1) | intensity ?
-Principled      | base_color (0.5, 0.5, 0.5) | metallic 0 | roughness 0.5 | ior 1.5 | specular 1 | specular_color (1, 1, 1) | transmission 0 | thickness 0 | attenuation_color (1, 1, 1) | attenuation_distance ? | clearcoat 0 | clearcoat_roughness 0 | sheen (0, 0, 0) | sheen_roughness 0 | emission (0, 0, 0) | alpha 1
+Principled      | base_color (0.5, 0.5, 0.5) | base_color_texture ? | metallic 0 | metallic_texture ? | roughness 0.5 | roughness_texture ? | ior 1.5 | specular 1 | specular_texture ? | specular_color (1, 1, 1) | specular_color_texture ? | transmission 0 | transmission_texture ? | thickness 0 | attenuation_color (1, 1, 1) | attenuation_distance ? | clearcoat 0 | clearcoat_texture ? | clearcoat_roughness 0 | clearcoat_roughness_texture ? | sheen (0, 0, 0) | sheen_texture ? | sheen_roughness 0 | sheen_roughness_texture ? | emission (0, 0, 0) | emission_texture ? | alpha 1 | alpha_texture ? | alpha_cutoff ? | normal_texture ? | normal_scale 1
 Quad            | size (1, 1)
 Render          | camera - | samples 64 | max_depth ? | seed 0 | passes ?
 Sphere          | radius 1

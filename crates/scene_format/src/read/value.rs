@@ -120,6 +120,8 @@ impl Reader<'_, '_> {
             if raw.starts_with('"') {
                 diagnostic = diagnostic.note("values that the program knows are written without quotes");
             }
+        } else if let Some(note) = about_field(&error.code) {
+            diagnostic = diagnostic.note(note);
         } else if lex::has_number_range(raw) {
             diagnostic = diagnostic.note("ranges of numbers are not values");
         } else if let Some(count) = wanted.split(' ').next().and_then(|word| word.parse().ok()) {
@@ -192,6 +194,21 @@ impl Reader<'_, '_> {
             }
         }
         fine
+    }
+}
+
+/// What is wrong with a field inside of a value.
+fn about_field(error: &ron::Error) -> Option<String> {
+    match error {
+        ron::Error::NoSuchStructField { expected, found, .. } => {
+            Some(format!("there is no field `{found}`; fields: {}", expected.join(", ")))
+        }
+        ron::Error::MissingStructField { field, .. } => Some(format!("`{field}` is missing")),
+        ron::Error::DuplicateStructField { field, .. } => Some(format!("`{field}` is written twice")),
+        ron::Error::InvalidValueForType { expected, found } if expected.starts_with('`') => {
+            Some(format!("{expected}, but is {found}"))
+        }
+        _ => None,
     }
 }
 
