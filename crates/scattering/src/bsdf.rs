@@ -79,6 +79,29 @@ impl Bsdf {
         }
     }
 
+    /// Index of refraction of the inside relative to the outside; `None` where there is no inside.
+    #[inline]
+    #[must_use]
+    pub fn interior_ior(&self) -> Option<f32> {
+        match self {
+            Self::Dielectric(b) if !b.is_thin() => Some(b.ior),
+            Self::Principled(b) if b.has_inside() => Some(b.ior()),
+            _ => None,
+        }
+    }
+
+    /// The same surface between other media.
+    ///
+    /// - `ior`: index of the inside relative to the outside, > 0. Without effect where there is no inside.
+    #[must_use]
+    pub fn with_relative_ior(&self, ior: f32) -> Self {
+        match self {
+            Self::Dielectric(b) if !b.is_thin() => Self::Dielectric(b.with_ior(ior)),
+            Self::Principled(b) if b.has_inside() => Self::Principled(b.with_solid_ior(ior)),
+            other => *other,
+        }
+    }
+
     /// True when a lobe is not delta, so that `eval` can be anything but zero.
     #[inline]
     #[must_use]

@@ -86,6 +86,11 @@ impl DielectricBsdf {
         }
     }
 
+    /// The same closed surface with another index.
+    pub(crate) fn with_ior(&self, ior: f32) -> Self {
+        Self::new(ior, self.tint, self.surface)
+    }
+
     /// The surface that the interface has; smooth for a pane.
     #[inline]
     #[must_use]

@@ -1,12 +1,13 @@
-use glam::{Affine3A, Vec2, Vec3};
+use crate::frame::MovingFrame;
+use glam::{Vec2, Vec3};
 use radiometry::math;
 use spatial::Ray;
 
 /// A pinhole camera that looks along −Z of its own space, Y up.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Camera {
-    /// World space (the scene's, rebased) of camera space; a rigid transform.
-    pub world_from_camera: Affine3A,
+    /// Where it is and looks, in the scene's rebased world.
+    pub frame: MovingFrame,
     /// Half the height of the image plane at distance 1: tan(fov/2).
     tan_half_fov: f32,
     resolution: Vec2,
@@ -16,9 +17,9 @@ impl Camera {
     /// - `vertical_fov`: radians, in (0, π).
     /// - `resolution`: pixels of the whole film, crop or no crop.
     #[must_use]
-    pub fn new(world_from_camera: Affine3A, vertical_fov: f32, resolution: Vec2) -> Self {
+    pub fn new(frame: MovingFrame, vertical_fov: f32, resolution: Vec2) -> Self {
         Self {
-            world_from_camera,
+            frame,
             tan_half_fov: math::tan(0.5 * vertical_fov),
             resolution,
         }
@@ -27,34 +28,46 @@ impl Camera {
     /// The ray through a place on the film.
     ///
     /// - `film`: pixels from the top left corner; the centre of pixel (x, y) is (x + ½, y + ½).
+    /// - `time`: in [0, 1] of the shutter; where a moving camera is, and the time of the ray.
     #[must_use]
-    pub fn ray(&self, film: Vec2) -> Ray {
+    pub fn ray(&self, film: Vec2, time: f32) -> Ray {
+        let frame = self.frame.at(time);
+        Ray {
+            time,
+            ..Ray::new(
+                frame.translation.into(),
+                frame.transform_vector3(self.on_plane(film)).normalize(),
+            )
+        }
+    }
+
+    /// Where a place on the film is seen, in camera space, on the plane at distance 1.
+    fn on_plane(&self, film: Vec2) -> Vec3 {
         let scale = 2.0 * self.tan_half_fov / self.resolution.y;
-        let on_plane = Vec3::new(
+        Vec3::new(
             (film.x - 0.5 * self.resolution.x) * scale,
             (0.5 * self.resolution.y - film.y) * scale,
             -1.0,
-        );
-        Ray {
-            origin: Vec3::from(self.world_from_camera.translation),
-            direction: self.world_from_camera.transform_vector3(on_plane).normalize(),
-            t_max: f32::INFINITY,
-            time: 0.0,
-        }
+        )
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Affine3A;
 
     #[test]
     fn corners_of_the_film_span_the_field_of_view() {
-        let camera = Camera::new(Affine3A::IDENTITY, 90_f32.to_radians(), Vec2::new(200.0, 100.0));
-        assert!((camera.ray(Vec2::new(100.0, 50.0)).direction + Vec3::Z).length() < 1e-6);
-        let top = camera.ray(Vec2::new(100.0, 0.0)).direction;
+        let camera = Camera::new(
+            MovingFrame::fixed(Affine3A::IDENTITY),
+            90_f32.to_radians(),
+            Vec2::new(200.0, 100.0),
+        );
+        assert!((camera.ray(Vec2::new(100.0, 50.0), 0.0).direction + Vec3::Z).length() < 1e-6);
+        let top = camera.ray(Vec2::new(100.0, 0.0), 0.0).direction;
         assert!((top.y - std::f32::consts::FRAC_1_SQRT_2).abs() < 1e-6 && top.z < 0.0);
-        let right = camera.ray(Vec2::new(200.0, 50.0)).direction;
+        let right = camera.ray(Vec2::new(200.0, 50.0), 0.0).direction;
         assert!((right.x / -right.z - 2.0).abs() < 1e-5);
     }
 }

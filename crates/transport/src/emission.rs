@@ -40,6 +40,7 @@ mod dimension {
     pub(super) const DIRECTION: u32 = 0;
     pub(super) const POSITION: u32 = 1;
     pub(super) const SIDE: u32 = 2;
+    pub(super) const TIME: u32 = 3;
 }
 
 impl<'a> EmissionSampler<'a> {
@@ -96,49 +97,69 @@ impl<'a> EmissionSampler<'a> {
             aims,
             u: Vec2::new(rest, u.y),
         };
-        let photon = match self.lights.light(row) {
-            Light::Point { position, intensity } => {
-                let cones = Cones::seen_from(self.targets, *position, None);
-                let (direction, pdf) = draw.direction(&cones, None)?;
-                EmittedPhoton {
-                    ray: Ray::new(*position, direction),
-                    flux: *intensity * (1.0 / pdf),
-                }
+        let time = stream.draw_1d(0, dimension::TIME);
+        let (ray, flux) = match self.lights.light(row) {
+            Light::Point { frame, intensity } => {
+                let position = frame.position(time);
+                let cones = Cones::seen_from(self.targets, position, None);
+                let (direction, pdf) = draw.direction(&cones, Shine::Everywhere)?;
+                (Ray::new(position, direction), *intensity * (1.0 / pdf))
+            }
+            Light::Spot { frame, intensity, cone } => {
+                let (position, axis) = (frame.position(time), -frame.back(time));
+                let cones = Cones::seen_from(self.targets, position, None);
+                let shine = Shine::Cone {
+                    axis,
+                    one_minus_cos: cone.one_minus_cos(),
+                };
+                let (direction, pdf) = draw.direction(&cones, shine)?;
+                let falloff = cone.falloff(direction.dot(axis));
+                (Ray::new(position, direction), *intensity * (falloff / pdf))
             }
             Light::Area {
                 sampler,
                 radiance,
                 two_sided,
             } => {
-                let surface = sampler.sample_area(stream.draw_2d(0, dimension::POSITION));
+                let surface = sampler.sample_area(stream.draw_2d(0, dimension::POSITION), time);
                 let (side, sides) = match (*two_sided, stream.draw_1d(0, dimension::SIDE) < 0.5) {
                     (false, _) => (1.0, 1.0),
                     (true, front) => (if front { 1.0 } else { -1.0 }, 2.0),
                 };
                 let normal = surface.ng * side;
                 let cones = Cones::seen_from(self.targets, surface.p, Some(normal));
-                let (direction, pdf) = draw.direction(&cones, Some(normal))?;
+                let (direction, pdf) = draw.direction(&cones, Shine::Lambert(normal))?;
                 let cos = direction.dot(normal);
                 if cos <= 0.0 || surface.pdf_area <= 0.0 {
                     return None;
                 }
                 let origin = spawn_origin(surface.p, surface.error, surface.ng, direction);
-                EmittedPhoton {
-                    ray: Ray::new(origin, direction),
-                    flux: *radiance * (cos * sides / (surface.pdf_area * pdf)),
-                }
+                let flux = *radiance * (cos * sides / (surface.pdf_area * pdf));
+                (Ray::new(origin, direction), flux)
             }
-            Light::Environment { radiance } => {
-                let direction = -warp::sample_uniform_sphere(stream.draw_2d(0, dimension::POSITION));
-                let (origin, pdf) = self.origin_at_infinity(direction, &draw)?;
-                let flux = *radiance * (1.0 / (warp::PDF_UNIFORM_SPHERE * pdf));
-                EmittedPhoton {
-                    ray: Ray::new(origin, direction),
-                    flux,
-                }
+            Light::Distant(disc) => {
+                let (from, pdf) = disc.sample(stream.draw_2d(0, dimension::POSITION), time);
+                self.from_infinity(-from, disc.radiance * (1.0 / pdf), &draw)?
+            }
+            Light::Environment(environment) => {
+                let (from, pdf) = environment.sample(stream.draw_2d(0, dimension::POSITION));
+                self.from_infinity(-from, environment.radiance_from(from) * (1.0 / pdf), &draw)?
             }
         };
+        let photon = EmittedPhoton {
+            ray: Ray { time, ..ray },
+            flux,
+        };
+        if flux.is_black() {
+            return None;
+        }
         photon.flux.is_finite().then_some(photon)
+    }
+
+    /// A photon of `irradiance` W·m⁻² across `direction`, and its flux.
+    fn from_infinity(&self, direction: Vec3, irradiance: Rgb, draw: &Draw) -> Option<(Ray, Rgb)> {
+        let (origin, pdf) = self.origin_at_infinity(direction, draw)?;
+        Some((Ray::new(origin, direction), irradiance * (1.0 / pdf)))
     }
 
     /// A point outside the scene from where `direction` leads through it, and the density of light and point, per area
@@ -192,20 +213,53 @@ struct Draw {
 }
 
 impl Draw {
-    /// A direction, and the density of light and direction, per solid angle; `normal` for surfaces that shine by
-    /// Lambert's law. `None` when it was to be aimed and no target is in view from here.
-    fn direction(&self, cones: &Cones, normal: Option<Vec3>) -> Option<(Vec3, f32)> {
-        let direction = match (self.aims, normal) {
-            (true, _) => cones.sample(self.u)?,
-            (false, Some(n)) => Frame::from_normal(n).world_from_local(warp::sample_cosine_hemisphere(self.u)),
-            (false, None) => warp::sample_uniform_sphere(self.u),
+    /// A direction, and the density of light and direction, per solid angle. `None` when it was to be aimed and no target
+    /// is in view from here.
+    fn direction(&self, cones: &Cones, shine: Shine) -> Option<(Vec3, f32)> {
+        let direction = if self.aims {
+            cones.sample(self.u)?
+        } else {
+            shine.sample(self.u)
         };
-        let uniform_pdf = match normal {
-            Some(n) => warp::pdf_cosine_hemisphere(n.dot(direction)),
-            None => warp::PDF_UNIFORM_SPHERE,
-        };
-        let pdf = self.uniform * uniform_pdf + self.aimed * cones.pdf(direction);
+        let pdf = self.uniform * shine.pdf(direction) + self.aimed * cones.pdf(direction);
         (pdf > 0.0).then_some((direction, pdf))
+    }
+}
+
+/// How light leaves a point when nothing aims it.
+#[derive(Clone, Copy)]
+enum Shine {
+    Everywhere,
+    /// In proportion to the cosine to a unit normal.
+    Lambert(Vec3),
+    /// Evenly into a cone around a unit axis.
+    Cone {
+        axis: Vec3,
+        one_minus_cos: f32,
+    },
+}
+
+impl Shine {
+    fn sample(self, u: Vec2) -> Vec3 {
+        match self {
+            Self::Everywhere => warp::sample_uniform_sphere(u),
+            Self::Lambert(n) => Frame::from_normal(n).world_from_local(warp::sample_cosine_hemisphere(u)),
+            Self::Cone { axis, one_minus_cos } => Frame::from_normal(axis)
+                .world_from_local(warp::sample_uniform_cone(u, one_minus_cos))
+                .normalize(),
+        }
+    }
+
+    fn pdf(self, direction: Vec3) -> f32 {
+        match self {
+            Self::Everywhere => warp::PDF_UNIFORM_SPHERE,
+            Self::Lambert(n) => warp::pdf_cosine_hemisphere(n.dot(direction)),
+            // Rounding may carry a sample out of the cone, where next to no light is.
+            Self::Cone { axis, one_minus_cos } if 1.0 - axis.dot(direction) <= one_minus_cos => {
+                1.0 / (TAU * one_minus_cos)
+            }
+            Self::Cone { .. } => 0.0,
+        }
     }
 }
 
@@ -226,9 +280,17 @@ fn choose<T>(items: &[T], probability: impl Fn(&T) -> f32, u: f32) -> Option<(&T
 fn flux_to_targets(light: &Light, targets: &[TargetSphere]) -> f64 {
     /// Points of an area light that are asked.
     const PROBES: u32 = 16;
+    /// When moving lights are asked.
+    const TIME: f32 = 0.5;
+    let discs = || PI * targets.iter().map(|t| t.radius * t.radius).sum::<f32>();
     let flux = match light {
-        Light::Point { position, intensity } => {
-            intensity.mean() * Cones::seen_from(targets, *position, None).solid_angle
+        Light::Point { frame, intensity } => {
+            intensity.mean() * Cones::seen_from(targets, frame.position(TIME), None).solid_angle
+        }
+        Light::Spot { frame, intensity, cone } => {
+            let cones = Cones::seen_from(targets, frame.position(TIME), None);
+            let axis = -frame.back(TIME);
+            intensity.mean() * cones.weighted(|direction| cone.falloff(direction.dot(axis)))
         }
         Light::Area {
             sampler,
@@ -237,17 +299,18 @@ fn flux_to_targets(light: &Light, targets: &[TargetSphere]) -> f64 {
         } => {
             let key = StageKey::new("flux to targets");
             let probe = |i: u32| {
-                let surface = sampler.sample_area(SampleStream::new(0, key, 0, i).draw_2d(0, 0));
-                let cones = |n: Vec3| Cones::seen_from(targets, surface.p, Some(n)).cosine_sum(n);
+                let surface = sampler.sample_area(SampleStream::new(0, key, 0, i).draw_2d(0, 0), TIME);
+                let cones = |n: Vec3| Cones::seen_from(targets, surface.p, Some(n)).weighted(|d| d.dot(n));
                 cones(surface.ng) + if *two_sided { cones(-surface.ng) } else { 0.0 }
             };
             let mean = (0..PROBES).map(probe).sum::<f32>() / PROBES as f32;
             radiance.mean() * sampler.area() as f32 * mean
         }
-        Light::Environment { radiance } => {
-            let discs: f32 = targets.iter().map(|t| t.radius * t.radius).sum();
-            radiance.mean() * 4.0 * PI * PI * discs
+        Light::Distant(disc) => {
+            let (_, pdf) = disc.sample(Vec2::splat(0.5), TIME);
+            disc.radiance.mean() / pdf * discs()
         }
+        Light::Environment(environment) => environment.fluence().mean() * discs(),
     };
     f64::from(flux)
 }
@@ -294,12 +357,12 @@ impl Cones {
         Some(Frame::from_normal(*axis).world_from_local(local).normalize())
     }
 
-    /// Solid angles weighted with the cosine of their axes, but never with less than a twentieth: a cone whose axis is
-    /// below the horizon can still reach above it.
-    fn cosine_sum(&self, normal: Vec3) -> f32 {
+    /// Solid angles weighted by a function of their axes, but never with less than a twentieth: a cone whose axis is below
+    /// the horizon can still reach above it.
+    fn weighted(&self, weight: impl Fn(Vec3) -> f32) -> f32 {
         self.all()
             .iter()
-            .map(|(axis, one_minus_cos)| TAU * one_minus_cos * axis.dot(normal).max(0.05))
+            .map(|(axis, one_minus_cos)| TAU * one_minus_cos * weight(*axis).max(0.05))
             .sum()
     }
 

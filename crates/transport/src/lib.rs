@@ -6,7 +6,8 @@
 //!
 //! - [`PathClass`] and [`Methods`] decide, for every path, which layer it belongs to and which estimator may count it:
 //!   exactly one does.
-//! - [`LightTable`] chooses lights by power and samples each by solid angle or area.
+//! - [`LightTable`] chooses lights by what they may send to a point, and samples each by solid angle or area.
+//! - [`PathMedium`] knows what a path travels in: nested and overlapping media, and its wavelength after dispersion.
 //! - [`arrive`], [`emitted_light`], [`sample_direct_light`] and [`scatter`] are one bounce of a path from the eye.
 //! - [`EmissionSampler`] and [`trace_photon`] are the life of a photon; [`PhotonMap`] estimates radiance from where
 //!   photons landed.
@@ -24,7 +25,9 @@
 mod camera;
 mod density;
 mod emission;
+mod frame;
 mod light;
+mod medium;
 mod path;
 mod path_class;
 mod photon;
@@ -35,7 +38,9 @@ mod vertex;
 pub use camera::Camera;
 pub use density::{DensityFilter, DensityScratch, DensitySettings, PhotonColumns, PhotonMap};
 pub use emission::{EmissionSampler, EmittedPhoton};
-pub use light::{LightSample, LightSource, LightTable};
+pub use frame::MovingFrame;
+pub use light::{Environment, EnvironmentMap, LightSample, LightSource, LightTable, SpotCone};
+pub use medium::PathMedium;
 pub use path::{Path, arrive, emitted_light, sample_direct_light, scatter};
 pub use path_class::{CausticMethod, DirectMethod, Event, Layer, Methods, PathClass};
 pub use photon::{Deposit, MapKind, MapKinds, PHOTON_STAGE, trace_photon};

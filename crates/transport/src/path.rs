@@ -1,11 +1,12 @@
+use crate::medium::{PathMedium, follow, unblocked};
 use crate::path_class::{Event, Layer, Methods, PathClass};
 use crate::scene::Scene;
 use crate::vertex::Vertex;
-use radiometry::{Rgb, SampleStream, math, warp};
-use scattering::Transport;
+use radiometry::{Rgb, SampleStream, warp};
+use scattering::{SampledWavelength, Transport};
 use spatial::{Ray, SurfacePoint, spawn_origin};
 
-/// A path from the eye, between two bounces. 56 bytes.
+/// A path from the eye, between two bounces. 84 bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Path {
     /// What light met now is weighted with, by the sampling so far.
@@ -16,8 +17,8 @@ pub struct Path {
     pub eta_scale: f32,
     /// Its random numbers.
     pub stream: SampleStream,
-    /// Row of the material that it travels in, or [`Path::VACUUM`].
-    pub medium: u32,
+    /// What it travels in.
+    pub medium: PathMedium,
     /// Where its contributions go, in its batch.
     pub slot: u32,
     /// Events so far.
@@ -26,12 +27,9 @@ pub struct Path {
     pub class: PathClass,
 }
 
-const _: () = assert!(size_of::<Path>() == 56);
+const _: () = assert!(size_of::<Path>() <= 88);
 
 impl Path {
-    /// [`Path::medium`] of a path that is in no material.
-    pub const VACUUM: u32 = u32::MAX;
-
     /// A camera path that contributes to `slot`.
     #[must_use]
     pub fn from_eye(slot: u32, stream: SampleStream) -> Self {
@@ -40,7 +38,7 @@ impl Path {
             pdf: f32::INFINITY,
             eta_scale: 1.0,
             stream,
-            medium: Self::VACUUM,
+            medium: PathMedium::VACUUM,
             slot,
             depth: 0,
             class: PathClass::EYE,
@@ -55,6 +53,7 @@ mod dimension {
     pub(super) const LOBE: u32 = 2;
     pub(super) const DIRECTION: u32 = 3;
     pub(super) const ROULETTE: u32 = 4;
+    pub(super) const WAVELENGTH: u32 = 5;
 }
 
 /// Events before Russian roulette begins.
@@ -66,35 +65,17 @@ pub(crate) const ROULETTE_MAX: f32 = 0.95;
 #[inline]
 #[must_use]
 pub fn arrive(scene: &Scene, path: &mut Path, ray: &Ray) -> Option<SurfacePoint> {
-    let Some(hit) = scene.rays.intersect(ray) else {
-        path.throughput *= transmittance(absorption_before(scene, path.medium, ray, None), f32::INFINITY);
-        return None;
-    };
-    let point = scene.rays.surface(ray, &hit);
-    path.throughput *= transmittance(absorption_before(scene, path.medium, ray, Some(&point)), hit.t);
-    Some(point)
-}
-
-/// The absorption coefficient along a ray, up to what it meets.
-///
-/// That of the medium it travels in. A path that began inside of glass, at a camera or a light there, does not know so;
-/// it arrives at the inner side of the surface, which tells.
-pub(crate) fn absorption_before(scene: &Scene, medium: u32, ray: &Ray, point: Option<&SurfacePoint>) -> Rgb {
-    if medium != Path::VACUUM {
-        return scene.material_by_row(medium).absorption;
+    let (point, left) = follow(scene, &mut path.medium, ray);
+    path.throughput *= left;
+    if let Some(point) = &point
+        && scene.material(point).dispersion.is_some()
+        && !path.medium.has_wavelength()
+    {
+        let drawn = SampledWavelength::new(path.stream.draw_1d(path.depth, dimension::WAVELENGTH));
+        path.medium.set_wavelength(drawn.wavelength);
+        path.throughput *= drawn.weight;
     }
-    match point {
-        Some(point) if ray.direction.dot(point.ng) > 0.0 => scene.material(point).absorption,
-        _ => Rgb::BLACK,
-    }
-}
-
-/// exp(−σ t) per channel: the law of Beer and Lambert. A coefficient of zero lets everything through at any distance.
-pub(crate) fn transmittance(absorption: Rgb, distance: f32) -> Rgb {
-    if absorption.is_black() {
-        return Rgb::WHITE;
-    }
-    absorption.map(|sigma| if sigma > 0.0 { math::exp(-sigma * distance) } else { 1.0 })
+    point
 }
 
 /// The light that a path meets at the end of its ray: on the surface `hit`, or the environment when there is none.
@@ -110,28 +91,26 @@ pub fn emitted_light(
     ray: &Ray,
     hit: Option<&SurfacePoint>,
 ) -> Option<(Layer, Rgb)> {
-    let (radiance, weight) = match hit {
+    if !methods.counts_traced_light(path.class) {
+        return None;
+    }
+    let weigh = |radiance: Rgb, pdf: f32| radiance * warp::power_heuristic(path.pdf, pdf);
+    let arriving = match hit {
         Some(point) => {
             let radiance = scene.lights.emitted(point, -ray.direction);
-            if radiance.is_black() || !methods.counts_traced_light(path.class) {
-                return None;
-            }
-            let weight = if path.pdf.is_infinite() {
-                1.0
+            if radiance.is_black() || path.pdf.is_infinite() {
+                radiance
             } else {
-                warp::power_heuristic(path.pdf, scene.lights.pdf_emitted(ray.origin, point))
-            };
-            (radiance, weight)
-        }
-        None => {
-            let (radiance, pdf) = scene.lights.environment()?;
-            if !methods.counts_traced_light(path.class) {
-                return None;
+                weigh(radiance, scene.lights.pdf_emitted(ray.origin, point))
             }
-            (radiance, warp::power_heuristic(path.pdf, pdf))
         }
+        None => scene
+            .lights
+            .escaped(ray.direction, ray.time)
+            .map(|(radiance, pdf)| weigh(radiance, pdf))
+            .sum(),
     };
-    Some((path.class.layer(), path.throughput * radiance * weight))
+    (!arriving.is_black()).then(|| (path.class.layer(), path.throughput * arriving))
 }
 
 /// Light that arrives at `hit` straight from a sampled light, scattered towards the eye.
@@ -152,7 +131,7 @@ pub fn sample_direct_light(
     if path.depth >= methods.max_depth {
         return;
     }
-    let vertex = Vertex::new(scene, hit, -ray.direction);
+    let vertex = Vertex::new(scene, hit, -ray.direction, &path.medium);
     if !vertex.bsdf.needs_light_sampling() {
         return;
     }
@@ -163,9 +142,9 @@ pub fn sample_direct_light(
     if !(counts_specular || counts_diffuse) {
         return;
     }
-    let u_choice = path.stream.draw_1d(path.depth, dimension::LIGHT_CHOICE);
+    let u_choice = path.stream.draw_2d(path.depth, dimension::LIGHT_CHOICE);
     let u = path.stream.draw_2d(path.depth, dimension::LIGHT);
-    let Some(light) = scene.lights.sample(hit.p, u_choice, u) else {
+    let Some(light) = scene.lights.sample(hit.p, ray.time, u_choice, u) else {
         return;
     };
     let (mut values, pdf) = vertex.eval_and_pdf(light.wi);
@@ -175,22 +154,22 @@ pub fn sample_direct_light(
     if !counts_diffuse {
         values.diffuse = Rgb::BLACK;
     }
-    if (values.specular.is_black() && values.diffuse.is_black()) || scene.rays.occluded(&light.shadow_ray(hit)) {
+    if values.specular.is_black() && values.diffuse.is_black() {
         return;
     }
+    let mut medium = path.medium;
+    if (light.wi.dot(hit.ng) > 0.0) != (vertex.wo.dot(hit.ng) > 0.0) {
+        medium.pass(scene, hit, light.wi);
+    }
+    let Some(left) = unblocked(scene, medium, &light.shadow_ray(hit)) else {
+        return;
+    };
     let weight = if light.delta {
         1.0
     } else {
         warp::power_heuristic(light.pdf, pdf)
     };
-    let mut arriving = path.throughput * light.radiance * (weight / light.pdf);
-    // The way to the light is through the material of the path when it stays on the inside.
-    if path.medium != Path::VACUUM && (light.wi.dot(hit.ng) > 0.0) == (vertex.wo.dot(hit.ng) > 0.0) {
-        arriving *= transmittance(
-            scene.material_by_row(path.medium).absorption,
-            light.shadow_ray(hit).t_max,
-        );
-    }
+    let arriving = path.throughput * light.radiance * left * (weight / light.pdf);
     if !values.specular.is_black() {
         contribute(specular.layer(), arriving * values.specular);
     }
@@ -209,7 +188,7 @@ pub fn scatter(scene: &Scene, methods: &Methods, path: &mut Path, ray: &Ray, hit
     if path.depth >= methods.max_depth {
         return None;
     }
-    let vertex = Vertex::new(scene, hit, -ray.direction);
+    let vertex = Vertex::new(scene, hit, -ray.direction, &path.medium);
     let u_lobe = path.stream.draw_1d(path.depth, dimension::LOBE);
     let u = path.stream.draw_2d(path.depth, dimension::DIRECTION);
     let sample = vertex.sample(u_lobe, u, Transport::Radiance)?;
@@ -229,22 +208,10 @@ pub fn scatter(scene: &Scene, methods: &Methods, path: &mut Path, ray: &Ray, hit
         path.throughput *= 1.0 / survival;
     }
     if sample.transmitted {
-        path.medium = medium_behind(scene, hit, sample.wi, path.medium);
+        path.medium.pass(scene, hit, sample.wi);
     }
     Some(Ray {
         time: ray.time,
         ..Ray::new(spawn_origin(hit.p, hit.error, hit.ng, sample.wi), sample.wi)
     })
-}
-
-/// The medium after passing through a surface in direction `wi`: its material on the way in, nothing on the way out.
-pub(crate) fn medium_behind(scene: &Scene, hit: &SurfacePoint, wi: glam::Vec3, before: u32) -> u32 {
-    let row = scene.material_row(hit);
-    if !scene.material_by_row(row).bsdf.has_inside() {
-        before
-    } else if wi.dot(hit.ng) < 0.0 {
-        row
-    } else {
-        Path::VACUUM
-    }
 }

@@ -1,11 +1,12 @@
 use crate::emission::EmittedPhoton;
-use crate::path::{Path, ROULETTE_DEPTH, ROULETTE_MAX, absorption_before, medium_behind, transmittance};
+use crate::medium::{PathMedium, follow};
+use crate::path::{ROULETTE_DEPTH, ROULETTE_MAX};
 use crate::path_class::Event;
 use crate::scene::Scene;
 use crate::vertex::Vertex;
 use glam::Vec3;
 use radiometry::{Rgb, SampleStream, StageKey};
-use scattering::Transport;
+use scattering::{SampledWavelength, Transport};
 use spatial::{Ray, spawn_origin};
 
 /// Key of the random numbers of photons.
@@ -95,6 +96,7 @@ mod dimension {
     pub(super) const LOBE: u32 = 0;
     pub(super) const DIRECTION: u32 = 1;
     pub(super) const ROULETTE: u32 = 2;
+    pub(super) const WAVELENGTH: u32 = 3;
 }
 
 /// Follows a photon until it is absorbed, leaves the scene or is of no use any more; calls `store` for each deposit.
@@ -117,15 +119,21 @@ pub fn trace_photon(
 ) {
     let (mut ray, mut flux) = (emitted.ray, emitted.flux);
     let mut kind = MapKind::Direct;
-    let mut medium = Path::VACUUM;
+    let mut medium = PathMedium::VACUUM;
     for bounce in 0.. {
-        let Some(hit) = scene.rays.intersect(&ray) else { return };
-        let point = scene.rays.surface(&ray, &hit);
-        flux *= transmittance(absorption_before(scene, medium, &ray, Some(&point)), hit.t);
+        let (Some(point), left) = follow(scene, &mut medium, &ray) else {
+            return;
+        };
+        flux *= left;
+        if scene.material(&point).dispersion.is_some() && !medium.has_wavelength() {
+            let drawn = SampledWavelength::new(stream.draw_1d(bounce + 1, dimension::WAVELENGTH));
+            medium.set_wavelength(drawn.wavelength);
+            flux *= drawn.weight;
+        }
         if flux.is_black() || !flux.is_finite() {
             return;
         }
-        let vertex = Vertex::new(scene, &point, -ray.direction);
+        let vertex = Vertex::new(scene, &point, -ray.direction, &medium);
         if vertex.bsdf.has_diffuse() && wanted.wants(kind) {
             let normal = vertex.facing_normal();
             store(Deposit {
@@ -159,8 +167,11 @@ pub fn trace_photon(
         }
         flux = scattered * (1.0 / survival);
         if sample.transmitted {
-            medium = medium_behind(scene, &point, sample.wi, medium);
+            medium.pass(scene, &point, sample.wi);
         }
-        ray = Ray::new(spawn_origin(point.p, point.error, point.ng, sample.wi), sample.wi);
+        ray = Ray {
+            time: ray.time,
+            ..Ray::new(spawn_origin(point.p, point.error, point.ng, sample.wi), sample.wi)
+        };
     }
 }

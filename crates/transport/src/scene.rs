@@ -2,7 +2,7 @@ use crate::light::{LightSource, LightTable};
 use crate::projection::{TargetSphere, cluster_targets};
 use glam::Vec3;
 use radiometry::Rgb;
-use scattering::Bsdf;
+use scattering::{Bsdf, Dispersion, Interior};
 use spatial::{RayScene, SurfacePoint};
 
 /// What a surface is made of.
@@ -12,6 +12,10 @@ pub struct Material {
     pub bsdf: Bsdf,
     /// Absorption coefficient inside the closed geometry, in m⁻¹; zero where the surface has no inside.
     pub absorption: Rgb,
+    /// Of the inside where it overlaps that of other geometry: the highest is there, of equal ones the innermost.
+    pub priority: i8,
+    /// How the index of refraction of the inside depends on the wavelength.
+    pub dispersion: Option<Dispersion>,
 }
 
 /// Everything that light meets, in rows: geometry, materials and lights. Immutable once built.
@@ -24,6 +28,7 @@ pub struct Scene {
     material_of_instance: Vec<u32>,
     targets: Vec<TargetSphere>,
     diffuse_area: f64,
+    may_hide_surfaces: bool,
 }
 
 impl Scene {
@@ -50,6 +55,7 @@ impl Scene {
         let lights = LightTable::new(&rays, lights);
         let material = |i: u32| &materials[material_of_instance[i as usize] as usize];
         let rows = 0..instances as u32;
+        let insides = rows.clone().filter(|i| material(*i).bsdf.has_inside()).count();
         let targets = rows.clone().filter(|i| material(*i).bsdf.has_specular()).map(|i| {
             let bounds = rays.instance_bounds(i);
             TargetSphere {
@@ -69,6 +75,7 @@ impl Scene {
             material_of_instance,
             targets,
             diffuse_area,
+            may_hide_surfaces: insides > 1,
         }
     }
 
@@ -91,6 +98,23 @@ impl Scene {
     #[must_use]
     pub fn material_by_row(&self, row: u32) -> &Material {
         &self.materials[row as usize]
+    }
+
+    /// The medium behind the surface that was hit; `None` where it has no inside.
+    #[inline]
+    pub(crate) fn interior(&self, point: &SurfacePoint) -> Option<Interior> {
+        let row = self.material_row(point);
+        let material = self.material_by_row(row);
+        material.bsdf.has_inside().then_some(Interior {
+            medium: row,
+            priority: material.priority,
+        })
+    }
+
+    /// True when a surface may lie hidden in the medium of another.
+    #[inline]
+    pub(crate) fn may_hide_surfaces(&self) -> bool {
+        self.may_hide_surfaces
     }
 
     /// Spheres around all surfaces that own a specular lobe, at most [`MAX_TARGETS`](crate::MAX_TARGETS).

@@ -1,3 +1,4 @@
+use crate::medium::PathMedium;
 use crate::scene::Scene;
 use glam::Vec3;
 use radiometry::{Frame, Rgb};
@@ -28,16 +29,18 @@ pub struct Vertex<'a> {
 
 impl<'a> Vertex<'a> {
     /// - `wo`: unit direction back along the ray that arrived.
+    /// - `medium`: what the path that arrived travels in.
     #[inline]
     #[must_use]
-    pub fn new(scene: &Scene, point: &'a SurfacePoint, wo: Vec3) -> Self {
+    pub fn new(scene: &Scene, point: &'a SurfacePoint, wo: Vec3, medium: &PathMedium) -> Self {
+        let material = scene.material(point);
         let same_side = (point.ns.dot(wo) > 0.0) == (point.ng.dot(wo) > 0.0);
         let normal = if same_side { point.ns } else { point.ng };
         let frame = Frame::from_normal(normal);
         Self {
             point,
             wo,
-            bsdf: scene.material(point).bsdf,
+            bsdf: medium.adapt(scene, material, material.bsdf, point, wo),
             wo_local: frame.local_from_world(wo),
             cos_normals: normal.dot(point.ng),
             frame,

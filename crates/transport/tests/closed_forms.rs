@@ -1,102 +1,17 @@
 //! Light transport against closed forms: what any correct implementation shows.
 
-use glam::{DAffine3, DVec3, Vec3};
+mod common;
+
+use common::{at, black, diffuse, floor, glass, point_light, radiance, radiance_with, scene};
+use glam::{DAffine3, Vec3};
 use radiometry::{Rgb, SampleStream, StageKey};
-use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, DiffuseBsdf, Microsurface};
-use spatial::{Geometry, Instance, PhotonTree, Ray, RayScene, Shape};
+use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, Microsurface};
+use spatial::{PhotonTree, Ray, Shape};
 use transport::{
-    CausticMethod, DensityFilter, DensityScratch, DensitySettings, EmissionSampler, Event, Layer, LightSource, MapKind,
-    MapKinds, Material, Methods, PHOTON_STAGE, Path, PhotonColumns, PhotonMap, Scene, TargetSphere, Vertex, arrive,
-    emitted_light, sample_direct_light, scatter, trace_photon,
+    CausticMethod, DensityFilter, DensityScratch, DensitySettings, EmissionSampler, Environment, Event, Layer,
+    LightSource, MapKind, MapKinds, Material, Methods, PHOTON_STAGE, Path, PathMedium, PhotonColumns, PhotonMap, Scene,
+    TargetSphere, Vertex, arrive, emitted_light, scatter, trace_photon,
 };
-
-fn diffuse(albedo: f32) -> Material {
-    Material {
-        bsdf: Bsdf::Diffuse(DiffuseBsdf::new(Rgb::splat(albedo))),
-        absorption: Rgb::BLACK,
-    }
-}
-
-fn black() -> Material {
-    Material {
-        bsdf: Bsdf::Black,
-        absorption: Rgb::BLACK,
-    }
-}
-
-fn glass(absorption: f32) -> Material {
-    let bsdf = Bsdf::Dielectric(DielectricBsdf::new(1.5, Rgb::WHITE, Microsurface::SMOOTH));
-    Material {
-        bsdf,
-        absorption: Rgb::splat(absorption),
-    }
-}
-
-/// One shape an instance, each with a material of its own.
-fn scene(shapes: &[(Shape, DAffine3, Material)], lights: Vec<LightSource>) -> Scene {
-    let geometries = shapes.iter().map(|(shape, ..)| Geometry::Shape(*shape)).collect();
-    let instances = shapes
-        .iter()
-        .enumerate()
-        .map(|(i, (_, placed, _))| Instance::fixed(i as u32, *placed))
-        .collect();
-    let rays = RayScene::build(geometries, instances).expect("valid scene");
-    let materials = shapes.iter().map(|(.., material)| *material).collect();
-    Scene::new(rays, materials, (0..shapes.len() as u32).collect(), lights)
-}
-
-fn at(x: f64, y: f64, z: f64) -> DAffine3 {
-    DAffine3::from_translation(DVec3::new(x, y, z))
-}
-
-/// A quad in the plane y = 0, facing up.
-fn floor() -> DAffine3 {
-    DAffine3::from_rotation_x(-std::f64::consts::FRAC_PI_2)
-}
-
-/// Radiance along a ray, all terms, averaged over `samples`; by layer.
-fn radiance(scene: &Scene, methods: &Methods, ray: Ray, samples: u32) -> [f64; Layer::COUNT] {
-    radiance_with(scene, methods, None, ray, samples)
-}
-
-/// The same, with a caustic photon map that is read as `methods` say.
-fn radiance_with(
-    scene: &Scene,
-    methods: &Methods,
-    caustics: Option<(&PhotonMap, DensitySettings)>,
-    ray: Ray,
-    samples: u32,
-) -> [f64; Layer::COUNT] {
-    let mut sums = [0.0; Layer::COUNT];
-    let mut scratch = DensityScratch::default();
-    for sample in 0..samples {
-        let mut path = Path::from_eye(0, SampleStream::new(7, StageKey::new("closed forms"), 0, sample));
-        let mut ray = ray;
-        loop {
-            let hit = arrive(scene, &mut path, &ray);
-            let mut add = |layer: Layer, light: Rgb| sums[layer as usize] += f64::from(light.g);
-            if let Some((layer, light)) = emitted_light(scene, methods, &path, &ray, hit.as_ref()) {
-                add(layer, light);
-            }
-            let Some(hit) = hit else { break };
-            if let (Some((map, density)), Some(layer)) = (&caustics, methods.caustic_map_layer(path.class)) {
-                let vertex = Vertex::new(scene, &hit, -ray.direction);
-                if vertex.bsdf.has_diffuse() {
-                    add(
-                        layer,
-                        path.throughput * map.estimate_radiance(&vertex, density, &mut scratch),
-                    );
-                }
-            }
-            sample_direct_light(scene, methods, &path, &ray, &hit, &mut add);
-            match scatter(scene, methods, &mut path, &ray, &hit) {
-                Some(next) => ray = next,
-                None => break,
-            }
-        }
-    }
-    sums.map(|sum| sum / f64::from(samples))
-}
 
 /// The caustic photons of `emitted` paths.
 fn caustic_map(scene: &Scene, emitted: u32) -> PhotonMap {
@@ -131,7 +46,7 @@ fn frosted_glass_shows_a_caustic_from_behind() {
     ));
     let material = |bsdf| Material {
         bsdf,
-        absorption: Rgb::BLACK,
+        ..Material::default()
     };
     let shapes = [
         (
@@ -195,13 +110,7 @@ fn point_light_over_a_plane_gives_flux_over_four_pi_h_squared() {
         floor(),
         diffuse(albedo),
     );
-    let scene = scene(
-        &[plane],
-        vec![LightSource::Point {
-            position: Vec3::new(0.0, height, 0.0),
-            intensity,
-        }],
-    );
+    let scene = scene(&[plane], vec![point_light(Vec3::new(0.0, height, 0.0), intensity)]);
     let ray = Ray::new(Vec3::new(1.0, 1.0, 0.0), Vec3::new(-1.0, -1.0, 0.0).normalize());
     let seen = radiance(&scene, &Methods::TRACED, ray, 1);
     let irradiance = f64::from(flux) / (4.0 * std::f64::consts::PI * f64::from(height * height));
@@ -238,7 +147,10 @@ fn a_closed_furnace_shines_alike_everywhere() {
 #[test]
 fn glass_absorbs_by_the_length_of_the_way() {
     let sphere = (Shape::Sphere { radius: 1.0 }, DAffine3::IDENTITY, glass(0.7));
-    let scene = scene(&[sphere], vec![LightSource::Environment { radiance: Rgb::WHITE }]);
+    let scene = scene(
+        &[sphere],
+        vec![LightSource::Environment(Environment::uniform(Rgb::WHITE))],
+    );
     let seen: f64 = radiance(
         &scene,
         &Methods::TRACED,
@@ -294,13 +206,7 @@ fn flux_in_black_box(light: LightSource, extra: &[(Shape, DAffine3, Material)]) 
 fn photons_in_a_closed_black_box_carry_the_flux_of_the_light() {
     let four_pi = 4.0 * std::f32::consts::PI;
     let intensity = Rgb::new(1.0, 2.0, 3.0);
-    let point = flux_in_black_box(
-        LightSource::Point {
-            position: Vec3::new(0.5, 0.3, 0.1),
-            intensity,
-        },
-        &[],
-    );
+    let point = flux_in_black_box(point_light(Vec3::new(0.5, 0.3, 0.1), intensity), &[]);
     for c in 0..3 {
         assert!(
             (point[c] - four_pi * intensity[c]).abs() < 1e-3 * four_pi * intensity[c],
@@ -342,16 +248,13 @@ fn aimed_emission_lands_the_same_flux_as_uniform_emission() {
         black(),
     );
     let sources = [
-        vec![LightSource::Point {
-            position: Vec3::new(-1.0, 1.0, 1.0),
-            intensity: Rgb::WHITE,
-        }],
+        vec![point_light(Vec3::new(-1.0, 1.0, 1.0), Rgb::WHITE)],
         vec![LightSource::Area {
             instance: 1,
             radiance: Rgb::WHITE,
             two_sided: true,
         }],
-        vec![LightSource::Environment { radiance: Rgb::WHITE }],
+        vec![LightSource::Environment(Environment::uniform(Rgb::WHITE))],
     ];
     for lights in sources {
         let scene = scene(&[ball, lamp], lights);
@@ -424,7 +327,7 @@ fn a_uniform_photon_field_returns_one_with_every_filter_and_k() {
                     let map = uniform_field(8000, seed);
                     let ray = Ray::new(Vec3::new(0.5, 0.5, 1.0), Vec3::NEG_Z);
                     let hit = arrive(&scene, &mut path, &ray).expect("the plane is there");
-                    let vertex = Vertex::new(&scene, &hit, Vec3::Z);
+                    let vertex = Vertex::new(&scene, &hit, Vec3::Z, &PathMedium::VACUUM);
                     let settings = DensitySettings {
                         nearest,
                         max_radius,
@@ -518,10 +421,7 @@ fn photons_caught_in_lossless_glass_end() {
         at(0.0, -1.0, 0.0) * floor(),
         diffuse(0.5),
     );
-    let light = LightSource::Point {
-        position: Vec3::new(0.1, 0.2, 0.05),
-        intensity: Rgb::WHITE,
-    };
+    let light = point_light(Vec3::new(0.1, 0.2, 0.05), Rgb::WHITE);
     let scene = scene(&[cube, ground], vec![light]);
     let sampler = EmissionSampler::aimed(&scene.lights, scene.specular_targets(), 0.1);
     let mut stored = 0;

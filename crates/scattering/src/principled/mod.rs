@@ -158,6 +158,15 @@ impl PrincipledBsdf {
         self.ior
     }
 
+    /// The same surface, its clear solid with another index relative to the outside; its other lobes stay as they are.
+    pub(crate) fn with_solid_ior(&self, ior: f32) -> Self {
+        Self {
+            ior,
+            fresnel_averages: DielectricBsdf::fresnel_averages(ior),
+            ..*self
+        }
+    }
+
     pub(crate) fn transmits(&self) -> bool {
         self.clear > 0.0
     }

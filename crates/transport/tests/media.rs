@@ -1,0 +1,192 @@
+//! Media that nest and overlap, and light of one wavelength.
+
+mod common;
+
+use common::{at, black, colour, diffuse, scene};
+use glam::{DAffine3, Vec2, Vec3};
+use radiometry::Rgb;
+use scattering::{Bsdf, DielectricBsdf, Dispersion, Microsurface};
+use spatial::{Ray, Shape};
+use transport::{Environment, LightSource, Material, Scene};
+
+fn clear(ior: f32, absorption: f32, priority: i8) -> Material {
+    Material {
+        bsdf: Bsdf::Dielectric(DielectricBsdf::new(ior, Rgb::WHITE, Microsurface::SMOOTH)),
+        absorption: Rgb::splat(absorption),
+        priority,
+        dispersion: None,
+    }
+}
+
+fn slab(from: f64, to: f64) -> (Shape, DAffine3) {
+    let size = Vec3::new(10.0, 10.0, (to - from) as f32);
+    (Shape::Cuboid { size }, at(0.0, 0.0, 0.5 * (from + to)))
+}
+
+fn white_sky() -> Vec<LightSource> {
+    vec![LightSource::Environment(Environment::uniform(Rgb::WHITE))]
+}
+
+fn through(scene: &Scene) -> f64 {
+    colour(scene, Ray::new(Vec3::new(0.1, 0.2, -3.0), Vec3::Z), 4096)[1]
+}
+
+#[test]
+fn the_higher_priority_fills_what_two_media_share() {
+    let (first, second) = (slab(0.0, 1.0), slab(0.5, 2.0));
+    for (a, b, expected) in [
+        (1, 0, -0.3 * 1.0 - 0.7 * 1.0),
+        (0, 1, -0.3 * 0.5 - 0.7 * 1.5),
+        (0, 0, -0.3 * 0.5 - 0.7 * 1.5),
+    ] {
+        let scene = scene(
+            &[
+                (first.0, first.1, clear(1.0, 0.3, a)),
+                (second.0, second.1, clear(1.0, 0.7, b)),
+            ],
+            white_sky(),
+        );
+        let seen = through(&scene);
+        let expected = f64::exp(expected);
+        assert!((seen - expected).abs() < 1e-4, "{a} {b}: {seen}, not {expected}");
+    }
+}
+
+#[test]
+fn an_interface_between_two_media_reflects_by_the_quotient_of_their_indices() {
+    // A drink that pokes into its glass: air | glass | water | air, at normal incidence.
+    let (glass, water) = (slab(0.0, 1.0), slab(0.9, 2.0));
+    let scene = scene(
+        &[
+            (glass.0, glass.1, clear(1.5, 0.0, 1)),
+            (water.0, water.1, clear(1.33, 0.0, 0)),
+            // What is seen through them, and nothing that is reflected.
+            (
+                Shape::Quad {
+                    size: Vec2::splat(100.0),
+                },
+                at(0.0, 0.0, 5.0),
+                black(),
+            ),
+        ],
+        vec![LightSource::Area {
+            instance: 2,
+            radiance: Rgb::WHITE,
+            two_sided: true,
+        }],
+    );
+    let reflectance = |a: f64, b: f64| ((a - b) / (a + b)).powi(2);
+    let faces = [reflectance(1.0, 1.5), reflectance(1.5, 1.33), reflectance(1.33, 1.0)];
+    // Two slabs in a row, all reflections between their faces counted.
+    let add = |(t1, r1): (f64, f64), (t2, r2): (f64, f64)| {
+        let between = 1.0 - r1 * r2;
+        (t1 * t2 / between, r1 + t1 * t1 * r2 / between)
+    };
+    let all = faces
+        .map(|r| (1.0 - r, r))
+        .into_iter()
+        .reduce(add)
+        .expect("three faces");
+    let ray = Ray::new(Vec3::new(0.1, 0.2, -3.0), Vec3::Z);
+    let seen = colour(&scene, ray, 1 << 16)[1];
+    assert!((seen - all.0).abs() < 2e-3, "{seen}, not {}", all.0);
+}
+
+#[test]
+fn a_white_furnace_of_nested_and_overlapping_media_stays_white() {
+    let ball = |radius| Shape::Sphere { radius };
+    let scene = scene(
+        &[
+            (ball(1.0), DAffine3::IDENTITY, clear(1.5, 0.0, 3)),
+            (ball(0.8), at(0.5, 0.0, 0.0), clear(1.33, 0.0, 1)),
+            (ball(0.3), DAffine3::IDENTITY, clear(1.0, 0.0, 3)),
+            (ball(0.4), at(0.9, 0.3, 0.0), clear(1.7, 0.0, 2)),
+        ],
+        white_sky(),
+    );
+    for (x, y) in [(0.0, 0.1), (0.35, 0.0), (0.6, 0.2), (0.95, 0.3), (1.2, -0.1)] {
+        let seen = colour(&scene, Ray::new(Vec3::new(x, y, -4.0), Vec3::Z), 1 << 16);
+        for channel in seen {
+            assert!((channel - 1.0).abs() < 0.01, "{x} {y}: {seen:?}");
+        }
+    }
+}
+
+#[test]
+fn a_hidden_surface_does_not_stand_in_the_light() {
+    let lit = |hidden: bool| {
+        let (outer, inner) = (slab(0.0, 4.0), slab(1.0, 2.0));
+        let mut shapes = vec![
+            (outer.0, outer.1, clear(1.3, 0.1, 1)),
+            (
+                Shape::Quad { size: Vec2::ONE },
+                at(0.0, 0.0, 3.0) * DAffine3::from_rotation_y(std::f64::consts::PI),
+                diffuse(0.5),
+            ),
+            (Shape::Disc { radius: 0.1 }, at(0.5, 0.0, 0.5), black()),
+        ];
+        if hidden {
+            shapes.push((inner.0, inner.1, clear(1.7, 5.0, 0)));
+        }
+        let light = LightSource::Area {
+            instance: 2,
+            radiance: Rgb::splat(50.0),
+            two_sided: false,
+        };
+        let scene = scene(&shapes, vec![light]);
+        colour(&scene, Ray::new(Vec3::new(0.0, 0.1, -1.0), Vec3::Z), 1 << 14)[1]
+    };
+    let (with, without) = (lit(true), lit(false));
+    assert!((with / without - 1.0).abs() < 0.02, "{with} {without}");
+}
+
+fn prism(dispersion: Option<Dispersion>) -> Material {
+    Material {
+        dispersion,
+        ..clear(1.5, 0.0, 0)
+    }
+}
+
+#[test]
+fn dispersive_glass_is_white_in_a_white_furnace_and_colours_an_edge() {
+    let flint = Dispersion::from_abbe(1.5, 15.0);
+    let ball = (Shape::Sphere { radius: 1.0 }, DAffine3::IDENTITY, prism(Some(flint)));
+    let furnace = scene(&[ball], white_sky());
+    let seen = colour(&furnace, Ray::new(Vec3::new(0.8, 0.2, -4.0), Vec3::Z), 1 << 14);
+    for channel in seen {
+        assert!((channel - 1.0).abs() < 0.01, "{seen:?}");
+    }
+    // A ray through the rim of a ball ends on a screen further out the more it is bent: blue beyond red.
+    let behind = |x: f64, glass: Material| {
+        let screen = (
+            Shape::Quad {
+                size: Vec2::new(0.1, 5.0),
+            },
+            at(x, 0.0, 3.0),
+            black(),
+        );
+        let light = LightSource::Area {
+            instance: 1,
+            radiance: Rgb::WHITE,
+            two_sided: true,
+        };
+        let scene = scene(&[(ball.0, ball.1, glass), screen], vec![light]);
+        colour(&scene, Ray::new(Vec3::new(0.9, 0.0, -4.0), Vec3::Z), 1 << 12)
+    };
+    let spread = |glass: Material| {
+        let (mut sums, mut places) = ([0.0; 3], [0.0; 3]);
+        for i in 0..80 {
+            let x = -8.0 + 0.1 * f64::from(i);
+            let seen = behind(x, glass);
+            for c in 0..3 {
+                sums[c] += seen[c];
+                places[c] += x * seen[c];
+            }
+        }
+        [0, 1, 2].map(|c| places[c] / sums[c])
+    };
+    let [red, green, blue] = spread(prism(Some(flint)));
+    assert!(red > green + 0.05 && green > blue + 0.05, "{red} {green} {blue}");
+    let [red, _, blue] = spread(prism(None));
+    assert!((red - blue).abs() < 1e-6);
+}
