@@ -9,7 +9,7 @@ use bevy_app::App;
 use bevy_ecs::reflect::AppTypeRegistry;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pipeline_data::vocabulary::VocabularyPlugin;
-use pipeline_stages::load::is_scene_component;
+use pipeline_data::vocabulary::is_scene_component;
 use scene_format::{Options, Scene, Schema, load};
 use std::fmt::Write;
 use std::path::Path;

@@ -5,7 +5,7 @@ use crate::exit::Failure;
 use crate::session;
 use crate::terminal::{print, use_colour};
 use bevy_ecs::reflect::AppTypeRegistry;
-use pipeline_stages::load::is_scene_component;
+use pipeline_data::vocabulary::is_scene_component;
 use scene_format::{Schema, Sources, schema_text};
 
 pub(crate) fn execute(options: &SchemaArgs) -> Result<(), Failure> {

@@ -7,8 +7,8 @@ use bevy_app::App;
 use bevy_ecs::reflect::AppTypeRegistry;
 use pipeline_core::{CorePlugin, Outcome, RenderClock, Report};
 use pipeline_data::RenderRequest;
+use pipeline_data::vocabulary::is_scene_component;
 use pipeline_stages::DefaultStages;
-use pipeline_stages::load::is_scene_component;
 use scene_format::{Diagnostics, Limits, Options, Scene, Schema};
 use std::path::PathBuf;
 

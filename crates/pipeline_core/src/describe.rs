@@ -42,6 +42,7 @@ pub fn describe_schedules(app: &mut App) -> Result<Vec<ScheduleDescription>, Str
             app,
             Prepare,
             &sets(&[
+                PrepareSystems::OpenShutter,
                 PrepareSystems::ResolveTransforms,
                 PrepareSystems::BuildAcceleration,
                 PrepareSystems::BuildTables,

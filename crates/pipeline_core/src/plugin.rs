@@ -34,6 +34,7 @@ impl Plugin for CorePlugin {
         .configure_sets(
             Prepare,
             (
+                PrepareSystems::OpenShutter,
                 PrepareSystems::ResolveTransforms,
                 PrepareSystems::BuildAcceleration,
                 PrepareSystems::BuildTables,

@@ -39,6 +39,8 @@ pub enum LoadSystems {
 /// The order inside [`Prepare`].
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
 pub enum PrepareSystems {
+    /// After it, the interval of time that the picture covers is known.
+    OpenShutter,
     /// After it, every prim has its place in the world.
     ResolveTransforms,
     /// After it, rays can be traced.

@@ -1,6 +1,7 @@
 use bevy_ecs::component::Component;
 use bevy_ecs::resource::Resource;
 use glam::{DAffine3, DVec3};
+use std::sync::Arc;
 
 /// The composed scene file: every value with its opinions and places. Written by `load`, read by whoever raises errors.
 #[derive(Resource)]
@@ -13,6 +14,21 @@ pub struct PrimIndex(pub u32);
 /// Places a prim in the world, in the scene file's own coordinates. Written by `geometry`.
 #[derive(Component, Clone, Copy, Debug)]
 pub struct WorldTransform(pub DAffine3);
+
+/// Where a prim goes while the shutter is open: its world transforms at evenly spaced times from opening to closing, in
+/// straight lines between. Written by `geometry`, on prims that move.
+#[derive(Component, Clone, Debug)]
+pub struct WorldMotion(pub Arc<[DAffine3]>);
+
+/// The time that the picture covers, in frames. Written by whatever opens the shutter for longer than a moment; without
+/// it everything stands as at the frame.
+#[derive(Resource, Clone, Copy, Debug, PartialEq)]
+pub struct ShutterInterval {
+    /// When it opens.
+    pub open: f64,
+    /// When it closes, not before.
+    pub close: f64,
+}
 
 /// The point of the scene file's world that is the origin of everything rendered, so that a room ten kilometres away
 /// keeps its precision in `f32`. Written by `geometry`.
@@ -32,5 +48,5 @@ pub struct Acceleration(pub Option<spatial::RayScene>);
 pub struct TransportScene(pub transport::Scene);
 
 /// The camera that the render looks through. Written by `tables`.
-#[derive(Resource, Clone, Copy, Debug)]
+#[derive(Resource, Clone, Debug)]
 pub struct CameraFrame(pub transport::Camera);

@@ -26,4 +26,6 @@ pub struct RenderSettings {
     pub tone_map: film::ToneMap,
     /// Row of the prim that carries `Render`, in the composed scene.
     pub render_prim: u32,
+    /// Row of the prim whose `Camera` it looks through.
+    pub camera_prim: u32,
 }

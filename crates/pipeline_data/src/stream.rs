@@ -1,10 +1,11 @@
+use crate::RenderSettings;
 use bevy_ecs::change_detection::Mut;
 use bevy_ecs::component::{Component, Mutable};
 use bevy_ecs::resource::Resource;
 use bevy_ecs::world::EntityMut;
 use film::{AuxGroup, ChannelLayout};
 use glam::{Vec2, Vec3};
-use radiometry::Rgb;
+use radiometry::{Rgb, SampleStream, StageKey};
 use spatial::{Ray, SurfacePoint};
 use transport::{Layer, Path};
 
@@ -24,11 +25,31 @@ pub struct FilmBatch {
     pub film_position: Vec<Vec2>,
 }
 
+impl FilmBatch {
+    /// The random numbers that a stage draws for the sample of a slot.
+    ///
+    /// - `index`: of the sample in its pixel, as the stream of its path says.
+    #[inline]
+    #[must_use]
+    pub fn sample_stream(
+        &self,
+        slot: usize,
+        index: u32,
+        stage: StageKey,
+        film: &film::Film,
+        settings: &RenderSettings,
+    ) -> SampleStream {
+        let pixel = film.pixel_of(self.first_pixel + self.pixel_of_slot[slot] as usize);
+        let domain = u64::from(pixel.y) * u64::from(settings.resolution.x) + u64::from(pixel.x);
+        SampleStream::new(settings.seed, stage, domain, index)
+    }
+}
+
 /// The rays of live paths. Written by `camera` and `path_tracing`; 32 bytes a path.
 #[derive(Component, Clone, Debug, Default)]
 pub struct RayStream(pub Vec<Ray>);
 
-/// The state of live paths. Written by `camera` and `path_tracing`; 56 bytes a path.
+/// The state of live paths. Written by `camera` and `path_tracing`; 84 bytes a path.
 #[derive(Component, Clone, Debug, Default)]
 pub struct PathStream(pub Vec<Path>);
 

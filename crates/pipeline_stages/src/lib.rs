@@ -10,6 +10,8 @@
 //! | [`geometry`] | world transforms and acceleration structures |
 //! | [`tables`] | materials, lights, camera and settings, checked |
 //! | [`camera`] | camera rays through the reconstruction filter |
+//! | [`motion_blur`] | the time of each camera ray, and a camera that moves |
+//! | [`depth_of_field`] | camera rays through a lens |
 //! | [`photon_map`] | caustic photons: emitted, stored as entities, gathered |
 //! | [`path_tracing`] | intersection, emission, direct light, scattering |
 //! | [`image`] | film, auxiliary channels, image files and checkpoints |
@@ -27,9 +29,11 @@ use bevy_ecs::schedule::IntoScheduleConfigs;
 use pipeline_core::Prepare;
 
 pub mod camera;
+pub mod depth_of_field;
 pub mod geometry;
 pub mod image;
 pub mod load;
+pub mod motion_blur;
 pub mod path_tracing;
 pub mod photon_map;
 pub mod tables;
@@ -44,15 +48,23 @@ impl Plugin for DefaultStages {
             geometry::GeometryPlugin,
             tables::TablesPlugin,
             camera::CameraPlugin,
+            motion_blur::MotionBlurPlugin,
+            depth_of_field::DepthOfFieldPlugin,
             photon_map::PhotonMapPlugin,
             path_tracing::PathTracingPlugin,
             image::ImagePlugin,
         ));
-        // These three report trouble and set the clock when they prepare; the film comes first, since it is what a bad
+        // These report trouble and set the clock when they prepare; the film comes first, since it is what a bad
         // resolution fails on.
         app.configure_sets(
             Prepare,
-            (image::ImageSystems, camera::CameraSystems, photon_map::PhotonMapSystems).chain(),
+            (
+                image::ImageSystems,
+                camera::CameraSystems,
+                depth_of_field::DepthOfFieldSystems,
+                photon_map::PhotonMapSystems,
+            )
+                .chain(),
         );
     }
 }

@@ -76,8 +76,8 @@ impl Default for Conductor {
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(Component, Default)]
 pub struct Dielectric {
-    /// Index of refraction of the inside relative to the outside: water 1.33, glass 1.5, diamond 2.42, a bubble in water
-    /// 0.75.
+    /// Index of refraction of the inside: water 1.33, glass 1.5, diamond 2.42, an air bubble in any of them 1. What lies
+    /// outside has the index of the medium there, 1 in the open.
     #[reflect(@Range::closed(0.25, 4.0))]
     pub ior: f32,
     /// 0 is polished, 1 frosted; the GGX width is its square.
@@ -91,11 +91,16 @@ pub struct Dielectric {
     /// Light lost on the way through the inside: exp(−absorption · distance). Colours thick parts more than thin ones.
     #[reflect(@Range::at_least(0.0), @Unit("m⁻¹"))]
     pub absorption: Vec3,
-    /// Abbe number: low spreads colours more. Not supported yet.
+    /// Abbe number, how little the index depends on the colour: crown glass 59, flint 36, diamond 55, water 56. Low spreads
+    /// colours more. Light keeps a single wavelength from the first such surface on, so the picture takes more samples.
     #[reflect(@Range::above(0.0))]
     pub dispersion: Option<f32>,
     /// A pane: both of its surfaces in one, too close together to bend light. Smooth only.
     pub thin: bool,
+    /// Which material is there where the insides of two overlap: the one with the higher priority; of equal ones the one
+    /// that was entered last. Let a drink reach a little into its glass, and give the glass the higher one.
+    #[reflect(@Range::closed(-128.0, 127.0))]
+    pub priority: i8,
 }
 
 impl Default for Dielectric {
@@ -108,6 +113,7 @@ impl Default for Dielectric {
             absorption: Vec3::ZERO,
             dispersion: None,
             thin: false,
+            priority: 0,
         }
     }
 }

@@ -30,7 +30,7 @@ pub use findings::{Findings, SceneReport, component_place, field_place};
 pub use geometry::{
     Band, Cuboid, Cylinder, Disc, GeometryComponents, GeometryComponentsItem, GeometrySource, Mesh, Quad, Sphere, Torus,
 };
-pub use light::{Emission, EnvironmentLight, PointLight};
+pub use light::{DistantLight, Emission, EnvironmentLight, PointLight, SpotLight};
 pub use material::{Conductor, Dielectric, Diffuse, Plastic};
 pub use principled::Principled;
 pub use render::{CausticMethod, DirectMethod, IndirectMethod, LightTransport, Render, SpecularMethod};
@@ -38,6 +38,20 @@ pub use structure::{LookAt, MaterialBinding, Transform};
 pub use texture::{TextureChannel, TextureEncoding, TextureFilter, TextureMap, TextureWrap};
 
 use bevy_app::{App, Plugin};
+use bevy_ecs::reflect::ReflectComponent;
+use bevy_reflect::TypeRegistration;
+use bevy_reflect::std_traits::ReflectDefault;
+
+/// Tells whether scenes may use a registered type: a component that has a default, of the program or of a plug-in.
+///
+/// The components of `bevy_ecs` itself are not for scenes. Whoever builds a [`Schema`] asks this, so that `run`, `check`
+/// and `schema` agree.
+#[must_use]
+pub fn is_scene_component(found: &TypeRegistration) -> bool {
+    found.contains::<ReflectComponent>()
+        && found.contains::<ReflectDefault>()
+        && !found.type_info().type_path().starts_with("bevy_")
+}
 
 /// Registers every component of the core vocabulary, so that scenes can name it.
 pub struct VocabularyPlugin;
@@ -62,6 +76,8 @@ impl Plugin for VocabularyPlugin {
             .register_type::<Principled>()
             .register_type::<Emission>()
             .register_type::<PointLight>()
+            .register_type::<SpotLight>()
+            .register_type::<DistantLight>()
             .register_type::<EnvironmentLight>()
             .register_type::<Camera>()
             .register_type::<Film>()

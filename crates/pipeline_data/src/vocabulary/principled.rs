@@ -59,6 +59,9 @@ pub struct Principled {
     /// How far light goes in a clear solid until `attenuation_color` is left; without it nothing is absorbed.
     #[reflect(@Range::above(0.0), @Unit("m"))]
     pub attenuation_distance: Option<f32>,
+    /// Of a clear solid: which material is there where the insides of two overlap, the one with the higher priority.
+    #[reflect(@Range::closed(-128.0, 127.0))]
+    pub priority: i8,
     /// Share of the surface under a clear coat of index 1.5.
     #[reflect(@Range::closed(0.0, 1.0))]
     pub clearcoat: f32,
@@ -119,6 +122,7 @@ impl Default for Principled {
             thickness: 0.0,
             attenuation_color: Vec3::ONE,
             attenuation_distance: None,
+            priority: 0,
             clearcoat: 0.0,
             clearcoat_texture: None,
             clearcoat_roughness: 0.0,

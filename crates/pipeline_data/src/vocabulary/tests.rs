@@ -10,9 +10,10 @@ Camera          | fov 40
 Conductor       | metal ? | eta ? | k ? | f0 ? | reflectance (1, 1, 1) | roughness 0 | energy_compensation true
 Cuboid          | size (1, 1, 1)
 Cylinder        | radius 1 | height 1 | capped true
-Dielectric      | ior 1.5 | roughness 0 | energy_compensation true | tint (1, 1, 1) | absorption (0, 0, 0) | dispersion ? | thin false
+Dielectric      | ior 1.5 | roughness 0 | energy_compensation true | tint (1, 1, 1) | absorption (0, 0, 0) | dispersion ? | thin false | priority 0
 Diffuse         | albedo (0.5, 0.5, 0.5) | albedo_texture ?
 Disc            | radius 1
+DistantLight    | irradiance (1, 1, 1) | angle 0.53
 Emission        | radiance (1, 1, 1) | power ? | two_sided false
 EnvironmentLight | file ? | radiance (1, 1, 1) | scale 1
 Film            | resolution (512, 512) | filter BlackmanHarris | filter_radius 1.5 | exposure 0 | tone_map Filmic
@@ -22,10 +23,11 @@ MaterialBinding | target -
 Mesh            | file - | mesh ? | primitive ? | smooth true | colors true
 Plastic         | albedo (0.5, 0.5, 0.5) | ior 1.5 | roughness 0.1
 PointLight      | power (1, 1, 1) | intensity ?
-Principled      | base_color (0.5, 0.5, 0.5) | base_color_texture ? | metallic 0 | metallic_texture ? | roughness 0.5 | roughness_texture ? | ior 1.5 | specular 1 | specular_texture ? | specular_color (1, 1, 1) | specular_color_texture ? | transmission 0 | transmission_texture ? | thickness 0 | attenuation_color (1, 1, 1) | attenuation_distance ? | clearcoat 0 | clearcoat_texture ? | clearcoat_roughness 0 | clearcoat_roughness_texture ? | sheen (0, 0, 0) | sheen_texture ? | sheen_roughness 0 | sheen_roughness_texture ? | emission (0, 0, 0) | emission_texture ? | alpha 1 | alpha_texture ? | alpha_cutoff ? | normal_texture ? | normal_scale 1
+Principled      | base_color (0.5, 0.5, 0.5) | base_color_texture ? | metallic 0 | metallic_texture ? | roughness 0.5 | roughness_texture ? | ior 1.5 | specular 1 | specular_texture ? | specular_color (1, 1, 1) | specular_color_texture ? | transmission 0 | transmission_texture ? | thickness 0 | attenuation_color (1, 1, 1) | attenuation_distance ? | priority 0 | clearcoat 0 | clearcoat_texture ? | clearcoat_roughness 0 | clearcoat_roughness_texture ? | sheen (0, 0, 0) | sheen_texture ? | sheen_roughness 0 | sheen_roughness_texture ? | emission (0, 0, 0) | emission_texture ? | alpha 1 | alpha_texture ? | alpha_cutoff ? | normal_texture ? | normal_scale 1
 Quad            | size (1, 1)
 Render          | camera - | samples 64 | max_depth ? | seed 0 | passes ?
 Sphere          | radius 1
+SpotLight       | power (1, 1, 1) | intensity ? | inner_angle 20 | outer_angle 30
 Torus           | major_radius 1 | minor_radius 0.25
 Transform       | translate (0, 0, 0) | rotate (0, 0, 0) | scale (1, 1, 1) | quaternion ? | matrix ?
 ";

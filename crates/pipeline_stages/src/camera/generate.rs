@@ -113,7 +113,7 @@ fn fill_batch(
             let position = Vec2::new(pixel.x as f32 + 0.5, pixel.y as f32 + 0.5);
             batch.pixel_of_slot.push((storage - pixels.start) as u32);
             batch.film_position.push(position);
-            rays.0.push(camera.0.ray(position));
+            rays.0.push(camera.0.ray(position, 0.0));
             paths.0.push(Path::from_eye(
                 slot,
                 SampleStream::new(settings.seed, PATH_STAGE, domain, sample),

@@ -3,7 +3,6 @@ use bevy_ecs::prelude::*;
 use film::FilterSampler;
 use pipeline_core::record_items;
 use pipeline_data::{CameraFrame, FilmBatch, FilmSums, PathStream, RayStream, RenderSettings};
-use radiometry::SampleStream;
 use rayon::prelude::*;
 
 /// Moves each ray to a place of its pixel's filter, chosen in proportion to the filter.
@@ -22,13 +21,10 @@ pub(super) fn sample_filter(
     let paths = batches
         .par_iter_mut()
         .map(|(batch, rays, paths)| {
-            let first = batch.first_pixel;
             for (slot, (ray, path)) in rays.0.iter_mut().zip(&paths.0).enumerate() {
-                let pixel = film.0.pixel_of(first + batch.pixel_of_slot[slot] as usize);
-                let domain = u64::from(pixel.y) * u64::from(settings.resolution.x) + u64::from(pixel.x);
-                let stream = SampleStream::new(settings.seed, CAMERA_STAGE, domain, path.stream.index());
+                let stream = batch.sample_stream(slot, path.stream.index(), CAMERA_STAGE, &film.0, &settings);
                 batch.film_position[slot] += filter.sample(stream.draw_2d(0, 0));
-                *ray = camera.0.ray(batch.film_position[slot]);
+                *ray = camera.0.ray(batch.film_position[slot], 0.0);
             }
             paths.0.len()
         })

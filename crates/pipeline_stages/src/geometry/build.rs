@@ -2,9 +2,9 @@ use bevy_ecs::prelude::*;
 use glam::{DAffine3, DVec3};
 use pipeline_core::{Counters, record_items};
 use pipeline_data::vocabulary::{Findings, GeometryComponents, GeometrySource, Mesh, SceneReport, component_place};
-use pipeline_data::{Acceleration, InstancePrims, MeshStore, PrimIndex, SceneOrigin, WorldTransform};
+use pipeline_data::{Acceleration, InstancePrims, MeshStore, PrimIndex, SceneOrigin, WorldMotion, WorldTransform};
 use scene_format::{Diagnostic, Scene};
-use spatial::{Geometry, Instance, RayScene, SpatialError, TriangleMesh};
+use spatial::{Geometry, Instance, Placement, RayScene, SpatialError, TriangleMesh};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub(super) fn build_acceleration(
     mut counters: ResMut<Counters>,
     mut acceleration: ResMut<Acceleration>,
     mut instance_prims: ResMut<InstancePrims>,
-    prims: Query<(&PrimIndex, &WorldTransform, GeometryComponents)>,
+    prims: Query<(&PrimIndex, &WorldTransform, Option<&WorldMotion>, GeometryComponents)>,
 ) {
     let scene = check.scene();
     let mut findings = Findings::default();
@@ -45,14 +45,15 @@ pub(super) fn build_acceleration(
     };
     let mut rows: Vec<_> = prims.iter().collect();
     rows.sort_by_key(|(index, ..)| **index);
-    for (index, world, geometry) in rows {
+    for (index, world, motion, geometry) in rows {
         let mut sources = geometry.sources();
         let Some((name, source)) = sources.next() else { continue };
         if let Some((second, _)) = sources.next() {
             let finding = two_geometries(scene, index.0, name, second);
             findings.push_at(component_place(scene, index.0, second), finding);
         } else {
-            parts.add(index.0, name, source, &world.0, origin.0);
+            let motion = motion.map(|motion| &*motion.0);
+            parts.add(index.0, name, source, (&world.0, motion), origin.0);
         }
     }
     acceleration.0 = None;
@@ -77,7 +78,7 @@ impl Parts<'_> {
         prim: u32,
         component: &'static str,
         source: GeometrySource<'_>,
-        world: &DAffine3,
+        (world, motion): (&DAffine3, Option<&[DAffine3]>),
         scene_origin: DVec3,
     ) {
         let (geometry, own_origin) = match source {
@@ -89,14 +90,15 @@ impl Parts<'_> {
             },
         };
         // First to the place in the world, then to the scene's origin, so that large numbers cancel in `f64`.
-        let translation = world.transform_point3(own_origin) - scene_origin;
-        self.instances.push(Instance {
-            geometry,
-            world_from_object: DAffine3 {
-                matrix3: world.matrix3,
-                translation,
-            },
-        });
+        let rebased = |world: &DAffine3| DAffine3 {
+            matrix3: world.matrix3,
+            translation: world.transform_point3(own_origin) - scene_origin,
+        };
+        let placement = match motion {
+            None => Placement::Fixed(rebased(world)),
+            Some(keys) => Placement::Moving(keys.iter().map(rebased).collect()),
+        };
+        self.instances.push(Instance { geometry, placement });
         self.prims.push(prim);
         self.components.push(component);
     }
@@ -157,7 +159,7 @@ impl Parts<'_> {
         for (row, instance) in self.instances.iter().enumerate() {
             let alone = vec![Instance {
                 geometry: 0,
-                ..*instance
+                placement: instance.placement.clone(),
             }];
             let geometry = self.geometries[instance.geometry as usize].clone();
             if let Err(error) = RayScene::build(vec![geometry], alone) {

@@ -2,17 +2,20 @@
 //!
 //! Scene: `Transform`, `LookAt`, and one of `Sphere`, `Quad`, `Disc`, `Cuboid`, `Cylinder`, `Torus`, `Band`, `Mesh`.
 //! Sets: `resolve_transforms` in [`PrepareSystems::ResolveTransforms`] places every prim in the world
-//! ([`WorldTransform`](pipeline_data::WorldTransform)) and finds the middle of all geometry
+//! ([`WorldTransform`](pipeline_data::WorldTransform)), at the frame and, where the
+//! [`ShutterInterval`](pipeline_data::ShutterInterval) is longer than a moment, over its time
+//! ([`WorldMotion`](pipeline_data::WorldMotion)), and finds the middle of all geometry
 //! ([`SceneOrigin`]); `build_acceleration` in [`PrepareSystems::BuildAcceleration`] moves the
 //! geometry there, in `f64`, and builds the ray scene ([`Acceleration`]), whose instances
 //! are listed by prim in [`InstancePrims`], in the order of the scene.
 //!
 //! Counters: `geometry/instances`.
 //!
-//! Limits: one frame, no motion. Each mesh file is stored once however many prims name it; shapes are one each, since
+//! Limits: meshes move as a whole, they do not deform. Each mesh file is stored once however many prims name it; shapes are one each, since
 //! they are as small as a reference to one.
 
 mod build;
+mod motion;
 mod placement;
 #[cfg(test)]
 mod tests;

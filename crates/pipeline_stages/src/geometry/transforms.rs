@@ -1,12 +1,16 @@
+use super::motion::{Motions, find_motions};
 use super::placement::{PlacementError, WorldBox, half_extent, place};
 use bevy_ecs::prelude::*;
+use bevy_ecs::reflect::AppTypeRegistry;
 use glam::{DAffine3, DVec3};
 use pipeline_core::record_items;
 use pipeline_data::vocabulary::{
     Findings, GeometryComponents, GeometryComponentsItem, GeometrySource, LookAt, SceneReport, Transform, field_place,
+    is_scene_component,
 };
-use pipeline_data::{MeshStore, PrimIndex, SceneOrigin, WorldTransform};
-use scene_format::{Diagnostic, FieldState, Place, Scene};
+use pipeline_data::{MeshStore, PrimIndex, SceneOrigin, ShutterInterval, WorldMotion, WorldTransform};
+use scene_format::{Diagnostic, FieldState, Place, Scene, Schema};
+use std::slice;
 
 type Placeable<'a> = (
     Entity,
@@ -16,13 +20,16 @@ type Placeable<'a> = (
     GeometryComponents,
 );
 
-/// Gives every prim its world transform, and finds the middle of all geometry.
+/// Gives every prim its world transform, its motion where it moves while the shutter is open, and finds the middle of all
+/// geometry.
 ///
 /// What is below a prim that cannot be placed is left without a transform and without a message of its own.
 pub(super) fn resolve_transforms(
     mut commands: Commands,
     mut check: SceneReport,
     store: Res<MeshStore>,
+    shutter: Option<Res<ShutterInterval>>,
+    registry: Res<AppTypeRegistry>,
     prims: Query<Placeable<'_>>,
 ) {
     let scene = check.scene();
@@ -31,14 +38,13 @@ pub(super) fn resolve_transforms(
     rows.sort_by_key(|(_, index, ..)| **index);
     record_items(rows.len());
     let mut world_of_prim: Vec<Option<DAffine3>> = vec![None; scene.prims.len()];
-    let mut around = WorldBox::EMPTY;
-    for (entity, index, transform, look_at, geometry) in rows {
+    for (_, index, transform, look_at, _) in &rows {
         let row = index.0 as usize;
         check_matrix_alone(scene, index.0, &mut findings);
         let parent = scene.prims[row]
             .parent
             .map_or(Some(DAffine3::IDENTITY), |parent| world_of_prim[parent]);
-        let world = parent.and_then(|parent| match place(&parent, transform, look_at) {
+        world_of_prim[row] = parent.and_then(|parent| match place(&parent, *transform, *look_at) {
             Ok(world) => Some(world),
             Err(error) => {
                 let (place, finding) = describe(error, scene, index.0);
@@ -46,15 +52,37 @@ pub(super) fn resolve_transforms(
                 None
             }
         });
-        world_of_prim[row] = world;
-        match world {
-            Some(world) => {
-                add_geometry(&mut around, &world, &geometry, &store);
-                commands.entity(entity).insert(WorldTransform(world));
-            }
-            None => {
-                commands.entity(entity).remove::<WorldTransform>();
-            }
+    }
+    let motions = match shutter {
+        None => Motions::default(),
+        Some(shutter) => {
+            let registry = registry.read();
+            let placed: Vec<u32> = rows.iter().map(|(_, index, ..)| index.0).collect();
+            // The scene was read with this schema.
+            Schema::new(&registry, is_scene_component).map_or_else(
+                |_| Motions::default(),
+                |schema| find_motions(scene, &schema, *shutter, &placed, &world_of_prim),
+            )
+        }
+    };
+    for (prim, error) in &motions.errors {
+        let (place, finding) = describe(*error, scene, *prim);
+        findings.push_at(place, finding.note("so it is at some time while the shutter is open"));
+    }
+    let mut around = WorldBox::EMPTY;
+    for (entity, index, _, _, geometry) in rows {
+        let mut entity = commands.entity(entity);
+        entity.remove::<(WorldTransform, WorldMotion)>();
+        let Some(world) = world_of_prim[index.0 as usize] else {
+            continue;
+        };
+        let keys = motions.keys.get(&index.0);
+        for key in keys.map_or(slice::from_ref(&world), Vec::as_slice) {
+            add_geometry(&mut around, key, &geometry, &store);
+        }
+        entity.insert(WorldTransform(world));
+        if let Some(keys) = keys {
+            entity.insert(WorldMotion(keys.as_slice().into()));
         }
     }
     check.file(findings);

@@ -1,22 +1,9 @@
 use bevy_ecs::prelude::*;
-use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
-use bevy_reflect::TypeRegistration;
-use bevy_reflect::std_traits::ReflectDefault;
+use bevy_ecs::reflect::AppTypeRegistry;
 use pipeline_core::Report;
-use pipeline_data::vocabulary::Findings;
+use pipeline_data::vocabulary::{Findings, is_scene_component};
 use pipeline_data::{ComposedScene, RenderRequest};
 use scene_format::Schema;
-
-/// Tells whether scenes may use a registered type: a component that has a default, of the program or of a plug-in.
-///
-/// The components of `bevy_ecs` itself are not for scenes. Whoever builds a [`Schema`] asks this, so that `run`, `check`
-/// and `schema` agree.
-#[must_use]
-pub fn is_scene_component(found: &TypeRegistration) -> bool {
-    found.contains::<ReflectComponent>()
-        && found.contains::<ReflectDefault>()
-        && !found.type_info().type_path().starts_with("bevy_")
-}
 
 /// Composes the scene file that the request names.
 pub(super) fn compose_scene(

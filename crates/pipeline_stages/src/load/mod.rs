@@ -7,12 +7,12 @@
 //! `import_meshes` brings the files that `Mesh` names into the [`MeshStore`](pipeline_data::MeshStore), each once, and
 //! mixes their bytes into the scene's hash.
 //!
-//! What a scene may say is what plug-ins registered: see [`is_scene_component`]. What is wrong goes to the
+//! What a scene may say is what plug-ins registered: see [`is_scene_component`](pipeline_data::vocabulary::is_scene_component). What is wrong goes to the
 //! [`Report`](pipeline_core::Report) with place and remedy; the following systems then find no scene and do nothing.
 //!
 //! Counters: `load/prims`, `load/triangles`.
 //!
-//! Limits: one frame; components with samples over time are taken at that frame. Meshes are Wavefront and glTF files;
+//! Limits: components with samples over time are taken at the frame; only `geometry` looks at other times. Meshes are Wavefront and glTF files;
 //! neither skins nor morph targets move them.
 
 mod compose;
@@ -20,8 +20,6 @@ mod import;
 mod spawn;
 #[cfg(test)]
 mod tests;
-
-pub use compose::is_scene_component;
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;

@@ -1,7 +1,7 @@
-use super::is_scene_component;
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use pipeline_core::{Counters, Report, record_items};
+use pipeline_data::vocabulary::is_scene_component;
 use pipeline_data::{ComposedScene, PrimIndex};
 use scene_format::Schema;
 

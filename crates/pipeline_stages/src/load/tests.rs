@@ -145,7 +145,7 @@ fn components_of_the_ecs_are_not_for_scenes() {
     let mut app = App::new();
     app.add_plugins((CorePlugin, LoadPlugin));
     let registry = app.world().resource::<AppTypeRegistry>().read();
-    let schema = scene_format::Schema::new(&registry, super::is_scene_component).unwrap();
+    let schema = scene_format::Schema::new(&registry, pipeline_data::vocabulary::is_scene_component).unwrap();
     assert!(schema.component("Camera").is_some() && schema.component("Name").is_none());
 }
 

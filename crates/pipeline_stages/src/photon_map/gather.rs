@@ -46,7 +46,7 @@ pub(super) fn gather_caustics(
                 let Some(layer) = settings.methods.caustic_map_layer(path.class) else {
                     continue;
                 };
-                let vertex = Vertex::new(&scene.0, hit, -ray.direction);
+                let vertex = Vertex::new(&scene.0, hit, -ray.direction, &path.medium);
                 if path.depth >= settings.methods.max_depth || !vertex.bsdf.has_diffuse() {
                     continue;
                 }

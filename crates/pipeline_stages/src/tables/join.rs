@@ -36,7 +36,7 @@ pub(super) fn join_tables(
     check.file(findings);
 }
 
-/// A point light can't be met by chance, and a mirror can't be connected to it.
+/// A light without an extent can't be met by chance, and a mirror can't be connected to it.
 fn warn_of_unreachable_caustics(
     scene: &Scene,
     settings: &RenderSettings,
@@ -45,7 +45,7 @@ fn warn_of_unreachable_caustics(
     findings: &mut Findings,
 ) {
     let Some(light) = list
-        .point_light
+        .delta_light
         .filter(|_| settings.methods.caustic == CausticMethod::Trace)
     else {
         return;
@@ -57,10 +57,10 @@ fn warn_of_unreachable_caustics(
     if table.of_instance.iter().any(is_delta) {
         let finding = Diagnostic::warning(
             "unreachable-caustics",
-            "`caustic: Trace` cannot find the light of a point light behind mirrors or glass",
+            "`caustic: Trace` cannot find the light of a point behind mirrors or glass",
         )
-        .also(light, "the point light")
-        .note("use `caustic: PhotonMap`, or a small `Sphere` with `Emission` in place of the point");
+        .also(light, "the light without an extent")
+        .note("use `caustic: PhotonMap`, or give it one: a small `Sphere` with `Emission`, an `angle` above 0");
         let place = field_place(scene, settings.render_prim, "LightTransport", &["caustic"]);
         findings.push_at(place, finding);
     }

@@ -1,34 +1,44 @@
+use super::frame::moving_frame;
 use super::materials::MaterialTable;
 use bevy_ecs::prelude::*;
-use glam::Vec3;
+use glam::{DAffine3, Vec3};
 use pipeline_core::Counters;
 use pipeline_data::vocabulary::{
-    Emission, EnvironmentLight, Findings, PointLight, SceneReport, component_place, field_place,
+    DistantLight, Emission, EnvironmentLight, Findings, PointLight, SceneReport, SpotLight, component_place,
+    field_place,
 };
-use pipeline_data::{Acceleration, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, WorldTransform};
-use radiometry::Rgb;
+use pipeline_data::{Acceleration, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, WorldMotion, WorldTransform};
+use radiometry::{Rgb, math};
 use scene_format::{Diagnostic, Place, Scene};
-use spatial::MOST_DISTANT;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use transport::LightSource;
+use transport::{Environment, LightSource, MovingFrame, SpotCone};
 
 /// All lights that shine, in the order of the scene. On its way to `join_tables`.
 #[derive(Resource, Default)]
 pub(super) struct LightList {
     pub(super) lights: Vec<LightSource>,
-    /// Where a point light is written, if there is one.
-    pub(super) point_light: Option<Place>,
+    /// Where a light is written that no ray can meet by chance, if there is one.
+    pub(super) delta_light: Option<Place>,
 }
 
 type LightPrim<'a> = (
     &'a PrimIndex,
     Option<&'a WorldTransform>,
     Option<&'a Emission>,
+    Option<&'a WorldMotion>,
     Option<&'a PointLight>,
+    Option<&'a SpotLight>,
+    Option<&'a DistantLight>,
     Option<&'a EnvironmentLight>,
 );
-type IsLight = Or<(With<Emission>, With<PointLight>, With<EnvironmentLight>)>;
+type IsLight = Or<(
+    With<Emission>,
+    With<PointLight>,
+    With<SpotLight>,
+    With<DistantLight>,
+    With<EnvironmentLight>,
+)>;
 
 struct Collector<'a> {
     scene: &'a Scene,
@@ -69,15 +79,24 @@ pub(super) fn list_lights(
     };
     let mut rows: Vec<_> = lights.iter().collect();
     rows.sort_by_key(|(index, ..)| **index);
-    for (index, world, emission, point, environment) in rows {
+    for (index, world, emission, motion, point, spot, distant, environment) in rows {
+        let prim = index.0;
         if let Some(emission) = emission {
-            collector.add_area(index.0, emission);
+            collector.add_area(prim, emission);
         }
-        if let (Some(point), Some(world)) = (point, world) {
-            collector.add_point(index.0, point, world);
+        // What could not be placed was reported where that was found.
+        let Some(world) = world else { continue };
+        if let Some(point) = point {
+            collector.add_point(prim, point, world, motion);
+        }
+        if let Some(spot) = spot {
+            collector.add_spot(prim, spot, world, motion);
+        }
+        if let Some(distant) = distant {
+            collector.add_distant(prim, distant, world, motion);
         }
         if let Some(environment) = environment {
-            collector.add_environment(index.0, environment);
+            collector.add_environment(prim, environment);
         }
     }
     for (instance, glow) in (0..).zip(&materials.glow_of_instance) {
@@ -166,30 +185,87 @@ impl Collector<'_> {
         self.add(material, "Principled", radiance, source);
     }
 
-    fn add_point(&mut self, prim: u32, light: &PointLight, world: &WorldTransform) {
+    /// The frame of a light; one that is too far off is reported.
+    fn frame(&mut self, prim: u32, world: &WorldTransform, motion: Option<&WorldMotion>) -> Option<MovingFrame> {
+        let frame = moving_frame(world, motion, self.origin.0);
+        if frame.is_none() {
+            let path = self.path(prim);
+            let message = format!("`{path}` is too far from the scene's geometry for single precision");
+            let place = component_place(self.scene, prim, "Transform");
+            self.findings.push_at(place, Diagnostic::error("too-far", message));
+        }
+        frame
+    }
+
+    /// Remembers where the first light is written that no ray can meet.
+    fn note_delta(&mut self, prim: u32, component: &'static str, strength: Rgb) {
+        if !strength.is_black() && self.list.delta_light.is_none() {
+            self.list.delta_light = component_place(self.scene, prim, component);
+        }
+    }
+
+    fn add_point(&mut self, prim: u32, light: &PointLight, world: &WorldTransform, motion: Option<&WorldMotion>) {
         let intensity: Rgb = match light.intensity {
             Some(intensity) => intensity.into(),
             None => Rgb::from(light.power) * (0.25 / PI) as f32,
         };
-        let position = (world.0.translation - self.origin.0).as_vec3();
-        if !position.is_finite() || position.abs().max_element() > MOST_DISTANT {
+        let Some(frame) = self.frame(prim, world, motion) else {
+            return;
+        };
+        self.note_delta(prim, "PointLight", intensity);
+        self.add(prim, "PointLight", intensity, LightSource::Point { frame, intensity });
+    }
+
+    fn add_spot(&mut self, prim: u32, light: &SpotLight, world: &WorldTransform, motion: Option<&WorldMotion>) {
+        if light.inner_angle > light.outer_angle {
             let message = format!(
-                "`{}` is too far from the scene's geometry for single precision",
-                self.path(prim)
+                "`SpotLight.inner_angle` of {} is wider than `outer_angle`, {}",
+                light.inner_angle, light.outer_angle
             );
-            let place = component_place(self.scene, prim, "Transform");
-            self.findings.push_at(place, Diagnostic::error("too-far", message));
+            let place = field_place(self.scene, prim, "SpotLight", &["inner_angle", "outer_angle"]);
+            self.findings.push_at(place, Diagnostic::error("out-of-range", message));
             return;
         }
-        if !intensity.is_black() && self.list.point_light.is_none() {
-            self.list.point_light = component_place(self.scene, prim, "PointLight");
-        }
+        let cosine = |degrees: f32| math::cos(degrees.to_radians());
+        let cone = SpotCone {
+            cos_inner: cosine(light.inner_angle),
+            cos_outer: cosine(light.outer_angle),
+        };
+        let intensity: Rgb = match light.intensity {
+            Some(intensity) => intensity.into(),
+            // Φ = π I (2 − cos inner − cos outer).
+            None => Rgb::from(light.power) * (1.0 / (PI * f64::from(2.0 - cone.cos_inner - cone.cos_outer))) as f32,
+        };
+        let Some(frame) = self.frame(prim, world, motion) else {
+            return;
+        };
+        self.note_delta(prim, "SpotLight", intensity);
         self.add(
             prim,
-            "PointLight",
+            "SpotLight",
             intensity,
-            LightSource::Point { position, intensity },
+            LightSource::Spot { frame, intensity, cone },
         );
+    }
+
+    fn add_distant(&mut self, prim: u32, light: &DistantLight, world: &WorldTransform, motion: Option<&WorldMotion>) {
+        let irradiance = Rgb::from(light.irradiance);
+        // Only its direction counts.
+        let at_origin = |m: &DAffine3| DAffine3::from_mat3_translation(m.matrix3, self.origin.0);
+        let motion = motion.map(|motion| WorldMotion(motion.0.iter().map(at_origin).collect()));
+        let world = WorldTransform(at_origin(&world.0));
+        let Some(frame) = self.frame(prim, &world, motion.as_ref()) else {
+            return;
+        };
+        if light.angle == 0.0 {
+            self.note_delta(prim, "DistantLight", irradiance);
+        }
+        let source = LightSource::Distant {
+            frame,
+            irradiance,
+            half_angle: 0.5 * light.angle.to_radians(),
+        };
+        self.add(prim, "DistantLight", irradiance, source);
     }
 
     fn add_environment(&mut self, prim: u32, light: &EnvironmentLight) {
@@ -221,7 +297,7 @@ impl Collector<'_> {
             prim,
             "EnvironmentLight",
             radiance,
-            LightSource::Environment { radiance },
+            LightSource::Environment(Environment::uniform(radiance)),
         );
     }
 
@@ -246,7 +322,7 @@ impl Collector<'_> {
                 }
             };
             self.findings.push(finding.note(
-                "lights: PointLight, EnvironmentLight, and any geometry with Emission or a Principled that emits",
+                "lights: PointLight, SpotLight, DistantLight, EnvironmentLight, and any geometry with Emission or a Principled that emits",
             ));
         } else if self.instance_of_prim.is_empty() {
             let message = format!("{scene} has no geometry");

@@ -1,7 +1,8 @@
 //! Tables: materials, lights, camera and settings, checked and by row.
 //!
 //! Scene: exactly one prim with `Render`, beside it `Film` and `LightTransport`; a `Camera`; `Diffuse`, `Conductor`,
-//! `Dielectric`, `Plastic`, `Principled` and `MaterialBinding`; `Emission`, `PointLight`, `EnvironmentLight`.
+//! `Dielectric`, `Plastic`, `Principled` and `MaterialBinding`; `Emission`, `PointLight`, `SpotLight`,
+//! `DistantLight`, `EnvironmentLight`.
 //! Set: [`PrepareSystems::BuildTables`]. `resolve_settings` joins scene and command line into
 //! [`RenderSettings`](pipeline_data::RenderSettings) and [`CameraFrame`](pipeline_data::CameraFrame);
 //! `build_material_table` finds the material of every instance; `list_lights` turns emission and power into radiance and
@@ -15,7 +16,7 @@
 //!
 //! Limits: no textures, one uniform environment. After this set nothing but writing fails: whatever could is refused here.
 
-mod camera;
+mod frame;
 mod join;
 mod lights;
 mod materials;

@@ -1,4 +1,4 @@
-use super::camera::rigid_frame;
+use super::frame::moving_frame;
 use bevy_ecs::prelude::*;
 use film::FilmWindow;
 use glam::UVec2;
@@ -6,14 +6,21 @@ use pipeline_data::vocabulary::{
     Camera, Film, Findings, IndirectMethod, LightTransport, Render, SceneReport, SpecularMethod, component_place,
     field_place,
 };
-use pipeline_data::{CameraFrame, FilmSums, PrimIndex, RenderRequest, RenderSettings, SceneOrigin, WorldTransform};
+use pipeline_data::{
+    CameraFrame, FilmSums, PrimIndex, RenderRequest, RenderSettings, SceneOrigin, WorldMotion, WorldTransform,
+};
 use scene_format::{Diagnostic, Scene};
 
 /// A film that would take more memory than this is refused: it is a slip of the pen, not a picture.
 const MOST_FILM_BYTES: u64 = 16 << 30;
 
 type RenderPrim<'a> = (&'a PrimIndex, &'a Render, Option<&'a Film>, Option<&'a LightTransport>);
-type CameraPrim<'a> = (&'a PrimIndex, &'a Camera, Option<&'a WorldTransform>);
+type CameraPrim<'a> = (
+    &'a PrimIndex,
+    &'a Camera,
+    Option<&'a WorldTransform>,
+    Option<&'a WorldMotion>,
+);
 type Stray<'a> = (&'a PrimIndex, Has<Film>, Has<LightTransport>);
 /// Prims with settings that no `Render` stands beside.
 type IsStray = (Without<Render>, Or<(With<Film>, With<LightTransport>)>);
@@ -35,7 +42,7 @@ pub(super) fn resolve_settings(
     cameras.sort_by_key(|(index, ..)| **index);
     if let Some((index, render, film, methods)) = the_render(scene, request, &renders, &cameras, &mut findings) {
         let default = Film::default();
-        let settings = settings(*index, render, film.unwrap_or(&default), methods, request);
+        let mut settings = settings(*index, render, film.unwrap_or(&default), methods, request);
         check_film(scene, &settings, request, &mut findings);
         if render.passes.is_some() {
             let finding = Diagnostic::error("not-supported-yet", "`Render.passes` is not supported yet")
@@ -43,7 +50,8 @@ pub(super) fn resolve_settings(
             findings.push_at(field_place(scene, index.0, "Render", &["passes"]), finding);
         }
         let frame = find_camera(scene, &settings, render, &cameras, &origin, &mut findings);
-        if let (Some(frame), false) = (frame, findings.has_error()) {
+        if let (Some((camera_prim, frame)), false) = (frame, findings.has_error()) {
+            settings.camera_prim = camera_prim;
             commands.insert_resource(frame);
             commands.insert_resource(settings);
         }
@@ -125,6 +133,7 @@ fn settings(
         exposure: film.exposure,
         tone_map: film.tone_map.into(),
         render_prim: index.0,
+        camera_prim: index.0,
     }
 }
 
@@ -180,7 +189,7 @@ fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest,
     }
 }
 
-/// Finds the camera that `Render` names, and its place.
+/// Finds the camera that `Render` names: the row of its prim, and its place.
 fn find_camera(
     scene: &Scene,
     settings: &RenderSettings,
@@ -188,9 +197,9 @@ fn find_camera(
     cameras: &[CameraPrim<'_>],
     origin: &SceneOrigin,
     findings: &mut Findings,
-) -> Option<CameraFrame> {
+) -> Option<(u32, CameraFrame)> {
     let path = &render.camera.0;
-    let Some((index, camera, world)) = cameras
+    let Some((index, camera, world, motion)) = cameras
         .iter()
         .find(|(index, ..)| scene.prims[index.0 as usize].path == *path)
     else {
@@ -224,7 +233,7 @@ fn find_camera(
     };
     // A camera that could not be placed was reported where that was found.
     let world = (*world)?;
-    let Some(frame) = rigid_frame(&world.0, origin.0) else {
+    let Some(frame) = moving_frame(world, *motion, origin.0) else {
         let message = format!("`{path}` is too far from the scene's geometry for single precision");
         findings.push_at(
             component_place(scene, index.0, "Transform"),
@@ -233,11 +242,8 @@ fn find_camera(
         return None;
     };
     let resolution = settings.resolution.as_vec2();
-    Some(CameraFrame(transport::Camera::new(
-        frame,
-        camera.fov.to_radians(),
-        resolution,
-    )))
+    let camera = transport::Camera::new(frame, camera.fov.to_radians(), resolution);
+    Some((index.0, CameraFrame(camera)))
 }
 
 fn warn_of_strays(scene: &Scene, strays: &Query<Stray<'_>, IsStray>, findings: &mut Findings) {

@@ -3,7 +3,7 @@
 use pipeline_data::vocabulary::{Conductor, Dielectric, Diffuse, Findings, Plastic, Principled, field_place};
 use radiometry::{Rgb, math};
 use scattering::{
-    Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, DiffuseBsdf, Metal, Microsurface, PlasticBsdf,
+    Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, DiffuseBsdf, Dispersion, Metal, Microsurface, PlasticBsdf,
     PrincipledBsdf, PrincipledParameters,
 };
 use scene_format::{Diagnostic, Scene};
@@ -13,7 +13,7 @@ use transport::Material;
 pub(super) fn diffuse_material(diffuse: &Diffuse) -> Material {
     Material {
         bsdf: Bsdf::Diffuse(DiffuseBsdf::new(diffuse.albedo.into())),
-        absorption: Rgb::BLACK,
+        ..Material::default()
     }
 }
 
@@ -41,7 +41,7 @@ pub(super) fn conductor_material(
         .with_energy_compensation(conductor.energy_compensation);
     Material {
         bsdf: Bsdf::Conductor(ConductorBsdf::new(fresnel, surface)),
-        absorption: Rgb::BLACK,
+        ..Material::default()
     }
 }
 
@@ -67,17 +67,16 @@ pub(super) fn dielectric_material(
     findings: &mut Findings,
 ) -> Material {
     let place = |field: &str| field_place(scene, prim, "Dielectric", &[field]);
-    if dielectric.dispersion.is_some() {
-        let finding = Diagnostic::error("not-supported-yet", "`Dielectric.dispersion` is not supported yet")
-            .note("leave it out: glass then bends all colours alike");
-        findings.push_at(place("dispersion"), finding);
-    }
     if !dielectric.thin {
         let surface = Microsurface::from_roughness(dielectric.roughness, specular_alpha)
             .with_energy_compensation(dielectric.energy_compensation);
         return Material {
             bsdf: Bsdf::Dielectric(DielectricBsdf::new(dielectric.ior, dielectric.tint.into(), surface)),
             absorption: dielectric.absorption.into(),
+            priority: dielectric.priority,
+            dispersion: dielectric
+                .dispersion
+                .map(|abbe| Dispersion::from_abbe(dielectric.ior, abbe)),
         };
     }
     if dielectric.roughness > 0.0 {
@@ -90,9 +89,14 @@ pub(super) fn dielectric_material(
             .note("a pane has no inside; `tint` colours it");
         findings.push_at(place("absorption"), finding);
     }
+    if dielectric.dispersion.is_some() {
+        let finding = Diagnostic::warning("without-effect", "`dispersion` of a `thin` dielectric has no effect")
+            .note("a pane does not bend light");
+        findings.push_at(place("dispersion"), finding);
+    }
     Material {
         bsdf: Bsdf::Dielectric(DielectricBsdf::thin(dielectric.ior, dielectric.tint.into())),
-        absorption: Rgb::BLACK,
+        ..Material::default()
     }
 }
 
@@ -101,7 +105,7 @@ pub(super) fn plastic_material(plastic: &Plastic, specular_alpha: f32) -> Materi
     let surface = Microsurface::from_roughness(plastic.roughness, specular_alpha);
     Material {
         bsdf: Bsdf::Plastic(PlasticBsdf::new(plastic.albedo.into(), plastic.ior, surface)),
-        absorption: Rgb::BLACK,
+        ..Material::default()
     }
 }
 
@@ -137,7 +141,12 @@ pub(super) fn principled_material(
         Some(distance) if bsdf.has_inside() => absorption_of(principled.attenuation_color.into(), distance),
         _ => Rgb::BLACK,
     };
-    Material { bsdf, absorption }
+    Material {
+        bsdf,
+        absorption,
+        priority: principled.priority,
+        dispersion: None,
+    }
 }
 
 /// The coefficient that leaves `colour` after `distance`: σ = −ln(colour)/distance, in m⁻¹.

@@ -1,0 +1,188 @@
+//! Where prims are while the shutter is open: transforms at as many times as it takes for straight lines between them.
+
+use super::placement::{PlacementError, place};
+use glam::{DAffine3, DVec3};
+use pipeline_data::ShutterInterval;
+use pipeline_data::vocabulary::{LookAt, Transform};
+use scene_format::{Scene, Schema};
+use std::collections::BTreeMap;
+
+/// Most intervals between two keys.
+const MOST_INTERVALS: usize = 128;
+/// Most keys of all prims together; where very many move, each has fewer.
+const MOST_KEYS: usize = 1 << 22;
+/// How far a place in a prim may be off the way it really takes, as a share of its distance from the prim's origin, and
+/// of the way itself.
+const TOLERANCE: f64 = 1e-4;
+
+/// The keys of each prim that moves, by row of the scene. A prim that cannot be placed at some time is in `errors`.
+#[derive(Default)]
+pub(super) struct Motions {
+    pub(super) keys: BTreeMap<u32, Vec<DAffine3>>,
+    pub(super) errors: Vec<(u32, PlacementError)>,
+}
+
+/// World transforms of all moving prims at one time.
+type Worlds = BTreeMap<u32, DAffine3>;
+
+struct Clock<'a> {
+    scene: &'a Scene,
+    schema: &'a Schema<'a>,
+    shutter: ShutterInterval,
+    /// Parents before children.
+    moving: Vec<u32>,
+    still: &'a [Option<DAffine3>],
+    errors: Vec<(u32, PlacementError)>,
+}
+
+/// Finds the keys of every prim whose place, or that of a prim above it, changes over time.
+///
+/// - `placed`: rows of all prims with entities, parents before children.
+/// - `still`: world transform of each row at the frame; `None` where there was an error.
+pub(super) fn find_motions(
+    scene: &Scene,
+    schema: &Schema<'_>,
+    shutter: ShutterInterval,
+    placed: &[u32],
+    still: &[Option<DAffine3>],
+) -> Motions {
+    let mut moves = vec![false; scene.prims.len()];
+    let mut moving = Vec::new();
+    for row in placed.iter().copied().filter(|row| still[*row as usize].is_some()) {
+        let parent_moves = scene.prims[row as usize].parent.is_some_and(|parent| moves[parent]);
+        if parent_moves || changes(scene, row) {
+            moves[row as usize] = true;
+            moving.push(row);
+        }
+    }
+    if moving.is_empty() || shutter.close <= shutter.open {
+        return Motions::default();
+    }
+    let most = (MOST_KEYS / moving.len()).clamp(1, MOST_INTERVALS);
+    let mut clock = Clock {
+        scene,
+        schema,
+        shutter,
+        moving,
+        still,
+        errors: Vec::new(),
+    };
+    let times = clock.worlds(most);
+    clock.collect(&times)
+}
+
+/// True when the scene gives samples for where a prim is.
+fn changes(scene: &Scene, row: u32) -> bool {
+    ["Transform", "LookAt"].iter().any(|component| {
+        scene.prims[row as usize]
+            .component(component)
+            .is_some_and(|found| found.fields.iter().any(|field| field.samples().is_some()))
+    })
+}
+
+impl Clock<'_> {
+    /// The world at evenly spaced times, halved until all ways are straight between them.
+    fn worlds(&mut self, most: usize) -> Vec<Worlds> {
+        let mut times = vec![self.at(0.0), self.at(1.0)];
+        while self.errors.is_empty() {
+            let intervals = times.len() - 1;
+            let middle = |i: usize| (i as f64 + 0.5) / intervals as f64;
+            let between: Vec<Worlds> = (0..intervals).map(|i| self.at(middle(i))).collect();
+            let straight = (0..intervals).all(|i| is_straight(&times[i], &between[i], &times[i + 1]));
+            if straight || 2 * intervals > most {
+                break;
+            }
+            let mut all = Vec::with_capacity(2 * intervals + 1);
+            for (before, after) in times.into_iter().zip(between.into_iter().map(Some).chain([None])) {
+                all.push(before);
+                all.extend(after);
+            }
+            times = all;
+        }
+        times
+    }
+
+    /// - `share`: of the time that the shutter is open.
+    fn at(&mut self, share: f64) -> Worlds {
+        let time = self.shutter.open + share * (self.shutter.close - self.shutter.open);
+        let mut worlds = Worlds::new();
+        for row in &self.moving {
+            let parent = match self.scene.prims[*row as usize].parent {
+                None => Some(DAffine3::IDENTITY),
+                Some(parent) => worlds.get(&(parent as u32)).copied().or(self.still[parent]),
+            };
+            let Some(parent) = parent else { continue };
+            let transform: Option<Transform> = self.component(*row, "Transform", time);
+            let look_at: Option<LookAt> = self.component(*row, "LookAt", time);
+            match place(&parent, transform.as_ref(), look_at.as_ref()) {
+                Ok(world) => {
+                    worlds.insert(*row, world);
+                }
+                Err(error) => self.errors.push((*row, error)),
+            }
+        }
+        worlds
+    }
+
+    fn component<T: bevy_reflect::Reflect>(&self, row: u32, name: &str, time: f64) -> Option<T> {
+        let found = self.scene.prims[row as usize].component(name)?;
+        let built = found.build(self.schema, time).downcast::<T>();
+        built.ok().map(|built| *built)
+    }
+
+    fn collect(mut self, times: &[Worlds]) -> Motions {
+        self.errors.dedup();
+        let mut motions = Motions {
+            errors: self.errors,
+            ..Motions::default()
+        };
+        for row in self.moving {
+            let keys: Option<Vec<DAffine3>> = times.iter().map(|worlds| worlds.get(&row).copied()).collect();
+            if let Some(keys) = keys {
+                motions.keys.insert(row, without_needless(keys));
+            }
+        }
+        motions
+    }
+}
+
+/// Two keys where all others lie on the straight way between them.
+fn without_needless(keys: Vec<DAffine3>) -> Vec<DAffine3> {
+    let (first, last) = (keys[0], keys[keys.len() - 1]);
+    let share = |i: usize| i as f64 / (keys.len() - 1) as f64;
+    let straight = |i: usize| deviates(&mix(&first, &last, share(i)), &keys[i], &first, &last) <= 1e-9;
+    if (1..keys.len() - 1).all(straight) {
+        vec![first, last]
+    } else {
+        keys
+    }
+}
+
+fn is_straight(before: &Worlds, between: &Worlds, after: &Worlds) -> bool {
+    between
+        .iter()
+        .all(|(row, exact)| match (before.get(row), after.get(row)) {
+            (Some(before), Some(after)) => deviates(&mix(before, after, 0.5), exact, before, after) <= TOLERANCE,
+            _ => true,
+        })
+}
+
+fn mix(a: &DAffine3, b: &DAffine3, share: f64) -> DAffine3 {
+    DAffine3 {
+        matrix3: a.matrix3 * (1.0 - share) + b.matrix3 * share,
+        translation: a.translation * (1.0 - share) + b.translation * share,
+    }
+}
+
+/// How far two placements are apart, in units of the prim's own size and of the way from `before` to `after`.
+fn deviates(found: &DAffine3, exact: &DAffine3, before: &DAffine3, after: &DAffine3) -> f64 {
+    let axes = |m: &DAffine3| [m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis];
+    let turned = axes(found)
+        .into_iter()
+        .zip(axes(exact))
+        .map(|(a, b): (DVec3, DVec3)| (a - b).length() / b.length())
+        .fold(0.0, f64::max);
+    let size = axes(exact).map(|axis| axis.length()).into_iter().fold(0.0, f64::max);
+    let way = before.translation.distance(after.translation);
+    turned.max(found.translation.distance(exact.translation) / (size + way))
+}
