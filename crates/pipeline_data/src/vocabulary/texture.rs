@@ -183,7 +183,7 @@ impl Fields {
         if let Some(bad) = factor.to_array().into_iter().find(|part| *part < 0.0) {
             return Err(E::invalid_value(
                 Unexpected::Float(bad.into()),
-                &"`factor` must be at least 0",
+                &"a `factor` of at least 0",
             ));
         }
         Ok(TextureMap {

@@ -9,6 +9,7 @@ use ron::value::RawValue;
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, Visitor};
 
 use super::{Reader, check, syntax, value_options};
+use crate::attributes::Shorthand;
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::layer::{FieldOpinion, ListEdit};
 use crate::lex;
@@ -120,7 +121,7 @@ impl Reader<'_, '_> {
             if raw.starts_with('"') {
                 diagnostic = diagnostic.note("values that the program knows are written without quotes");
             }
-        } else if let Some(note) = about_field(&error.code) {
+        } else if let Some(note) = complaint(held.unwrap_or(field.type_info), &error.code) {
             diagnostic = diagnostic.note(note);
         } else if lex::has_number_range(raw) {
             diagnostic = diagnostic.note("ranges of numbers are not values");
@@ -197,17 +198,11 @@ impl Reader<'_, '_> {
     }
 }
 
-/// What is wrong with a field inside of a value.
-fn about_field(error: &ron::Error) -> Option<String> {
+/// What a type that reads itself says is wrong.
+fn complaint(info: &TypeInfo, error: &ron::Error) -> Option<String> {
+    let reads_itself = info.as_struct().is_ok_and(|found| found.has_attribute::<Shorthand>());
     match error {
-        ron::Error::NoSuchStructField { expected, found, .. } => {
-            Some(format!("there is no field `{found}`; fields: {}", expected.join(", ")))
-        }
-        ron::Error::MissingStructField { field, .. } => Some(format!("`{field}` is missing")),
-        ron::Error::DuplicateStructField { field, .. } => Some(format!("`{field}` is written twice")),
-        ron::Error::InvalidValueForType { expected, found } if expected.starts_with('`') => {
-            Some(format!("{expected}, but is {found}"))
-        }
+        ron::Error::Message(text) if reads_itself => Some(text.clone()),
         _ => None,
     }
 }
