@@ -11,12 +11,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The crates of the workspace, each with all crates of the workspace that it may depend on.
-const ARROWS: [(&str, &[&str]); 10] = [
+const ARROWS: [(&str, &[&str]); 11] = [
     ("radiometry", &[]),
     ("scattering", &["radiometry"]),
     ("spatial", &["radiometry"]),
-    ("transport", &["scattering", "spatial", "radiometry"]),
     ("film", &[]),
+    ("texture", &["radiometry", "film"]),
+    ("transport", &["scattering", "spatial", "texture", "radiometry"]),
     ("scene_format", &[]),
     ("pipeline_core", &[]),
     (
@@ -26,6 +27,7 @@ const ARROWS: [(&str, &[&str]); 10] = [
             "transport",
             "scattering",
             "spatial",
+            "texture",
             "radiometry",
             "film",
             "scene_format",
@@ -39,6 +41,7 @@ const ARROWS: [(&str, &[&str]); 10] = [
             "transport",
             "scattering",
             "spatial",
+            "texture",
             "radiometry",
             "film",
             "scene_format",
@@ -53,6 +56,7 @@ const ARROWS: [(&str, &[&str]); 10] = [
             "transport",
             "scattering",
             "spatial",
+            "texture",
             "radiometry",
             "film",
             "scene_format",

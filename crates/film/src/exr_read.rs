@@ -98,7 +98,7 @@ pub enum ExrDecodeError {
         what: &'static str,
     },
     /// The image would take too much memory.
-    #[error("{width}x{height} pixels with {channels} channels are more than 2^28 values; crop it, or drop channels")]
+    #[error("{width}x{height} pixels with {channels} channels are more than {most} values; crop it, or drop channels")]
     TooLarge {
         /// Width of the data window.
         width: u32,
@@ -106,6 +106,8 @@ pub enum ExrDecodeError {
         height: u32,
         /// Number of channels.
         channels: u64,
+        /// Most values that are read.
+        most: u64,
     },
     /// The file is larger than any image that could be read.
     #[error("the file is larger than 2 GiB; crop the image, or drop channels")]
@@ -163,7 +165,18 @@ fn read_limited(path: &Path) -> io::Result<Option<Vec<u8>>> {
 ///
 /// An [`ExrDecodeError`] for bytes that are not such a file.
 pub fn decode_exr(bytes: &[u8]) -> Result<ExrImage, ExrDecodeError> {
-    check_header(bytes)?;
+    decode_exr_within(bytes, MAX_VALUES)
+}
+
+/// As [`decode_exr`], with another limit.
+///
+/// - `most_values`: over all channels; each takes four bytes.
+///
+/// # Errors
+///
+/// An [`ExrDecodeError`] for bytes that are not such a file.
+pub fn decode_exr_within(bytes: &[u8], most_values: u64) -> Result<ExrImage, ExrDecodeError> {
+    check_header(bytes, most_values)?;
     // The decoder asserts some of its expectations about a file; a damaged one may break them.
     match catch_unwind(AssertUnwindSafe(|| decode(bytes))) {
         Ok(result) => result,

@@ -18,7 +18,24 @@ const DEEP: u32 = 1 << 11;
 const MULTI_PART: u32 = 1 << 12;
 
 /// Checks that an EXR file is of a supported kind and that its claims are affordable.
-pub(crate) fn check_header(bytes: &[u8]) -> Result<(), ExrDecodeError> {
+///
+/// - `most_values`: over all channels.
+pub(crate) fn check_header(bytes: &[u8], most_values: u64) -> Result<(), ExrDecodeError> {
+    let (claims, is_tiled, rest) = read_claims(bytes)?;
+    claims.check(is_tiled, rest, most_values)
+}
+
+/// Width and height of the image in an EXR file, before anything of it is decoded.
+///
+/// # Errors
+///
+/// An [`ExrDecodeError`] for bytes that are not such a file.
+pub fn exr_size(bytes: &[u8]) -> Result<(u32, u32), ExrDecodeError> {
+    read_claims(bytes)?.0.size()
+}
+
+/// Reads the header; with it come whether the image is tiled, and the number of bytes after the header.
+fn read_claims(bytes: &[u8]) -> Result<(Claims, bool, u64), ExrDecodeError> {
     let mut cursor = Cursor(bytes);
     if cursor.take::<4>() != Some(MAGIC) {
         return Err(ExrDecodeError::NotExr);
@@ -40,7 +57,7 @@ pub(crate) fn check_header(bytes: &[u8]) -> Result<(), ExrDecodeError> {
         let size = cursor.u32().ok_or(CUT_OFF)? as usize;
         claims.read(name, cursor.slice(size).ok_or(CUT_OFF)?)?;
     }
-    claims.check(flags & TILED != 0, cursor.0.len() as u64)
+    Ok((claims, flags & TILED != 0, cursor.0.len() as u64))
 }
 
 const CUT_OFF: ExrDecodeError = ExrDecodeError::Malformed { what: String::new() };
@@ -96,23 +113,28 @@ impl Claims {
         Ok(())
     }
 
-    /// Compares the claims with the limits, and with the `rest` bytes that follow the header.
-    fn check(&self, tiled: bool, rest: u64) -> Result<(), ExrDecodeError> {
+    fn size(&self) -> Result<(u32, u32), ExrDecodeError> {
         let [x0, y0, x1, y1] = self.window.ok_or_else(|| malformed("no data window"))?;
+        Ok((x0.abs_diff(x1) + 1, y0.abs_diff(y1) + 1))
+    }
+
+    /// Compares the claims with the limits, and with the `rest` bytes that follow the header.
+    fn check(&self, tiled: bool, rest: u64, most_values: u64) -> Result<(), ExrDecodeError> {
+        let (width, height) = self.size()?;
         let channels = self.channels.ok_or_else(|| malformed("no channel list"))?;
         let lines = self.lines_per_block.ok_or_else(|| malformed("no compression"))?;
-        let (width, height) = (x0.abs_diff(x1) + 1, y0.abs_diff(y1) + 1);
         let values = u64::from(width) * u64::from(height) * channels;
-        if values > MAX_VALUES {
+        if values > most_values {
             return Err(ExrDecodeError::TooLarge {
                 width,
                 height,
                 channels,
+                most: most_values,
             });
         }
         let blocks = match self.tile {
             // Tile sizes are bounded so that a block fits in memory however few pixels there are.
-            Some((w, h)) if w == 0 || h == 0 || u64::from(w) * u64::from(h) * channels > MAX_VALUES => {
+            Some((w, h)) if w == 0 || h == 0 || u64::from(w) * u64::from(h) * channels > most_values => {
                 return Err(malformed("a tile size is out of range"));
             }
             Some((w, h)) if tiled => u64::from(width.div_ceil(w)) * u64::from(height.div_ceil(h)),

@@ -108,6 +108,12 @@ pub struct Unit(pub &'static str);
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Required;
 
+/// A struct that may be written as the value of this field alone: `"wood.png"` for `(file: "wood.png")`.
+///
+/// It is an attribute of the type, whose own `Deserialize` reads both.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shorthand(pub &'static str);
+
 /// A field that excludes others of its component.
 ///
 /// In one `group` only one side may be written. A field without a side is one by itself; fields of

@@ -105,7 +105,7 @@ mod session;
 mod source;
 mod validate;
 
-pub use attributes::{Exclusive, Range, Required, Unit};
+pub use attributes::{Exclusive, Range, Required, Shorthand, Unit};
 pub use compose::ArcKind;
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use explain::explain;

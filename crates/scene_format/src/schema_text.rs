@@ -5,6 +5,7 @@ use std::fmt::Write;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_reflect::{PartialReflect, ReflectRef, TypeInfo, TypeRegistry};
 
+use crate::attributes::Shorthand;
 use crate::diagnostic::Diagnostic;
 use crate::read::unknown_component;
 use crate::relation::{AssetPath, Target, Targets};
@@ -118,7 +119,14 @@ pub(crate) fn describe_type(info: &'static TypeInfo, registry: &TypeRegistry) ->
             let items: Vec<String> = fields.iter().map(|field| named(field.type_id())).collect();
             describe_items(&items)
         }
-        TypeInfo::Struct(fields) => format!("({}: ..)", fields.field_names().join(": .., ")),
+        TypeInfo::Struct(fields) => {
+            let whole = format!("({}: ..)", fields.field_names().join(": .., "));
+            let short = fields.get_attribute::<Shorthand>();
+            match short.and_then(|short| fields.field(short.0)) {
+                Some(field) => format!("{}, or {whole}", named(field.type_id())),
+                None => whole,
+            }
+        }
         _ => format!("a `{}`", info.type_path_table().short_path()),
     }
 }

@@ -157,6 +157,8 @@ pub struct Mesh {
     pub primitive: Option<u32>,
     /// Whether the file's normals shade the surface. Without them, or when off, faces look flat: none are invented.
     pub smooth: bool,
+    /// Whether the colours of the file's vertices multiply `Diffuse.albedo`, `Principled.base_color` and `Principled.alpha`.
+    pub colors: bool,
 }
 
 impl Default for Mesh {
@@ -166,6 +168,7 @@ impl Default for Mesh {
             mesh: None,
             primitive: None,
             smooth: true,
+            colors: true,
         }
     }
 }

@@ -1,3 +1,4 @@
+use super::TextureMap;
 use bevy_ecs::component::Component;
 use bevy_ecs::reflect::ReflectComponent;
 use bevy_reflect::Reflect;
@@ -12,12 +13,15 @@ pub struct Diffuse {
     /// Share of light that it reflects. Above about 0.9 light bounces for long, and the render takes longer.
     #[reflect(@Range::closed(0.0, 1.0))]
     pub albedo: Vec3,
+    /// A picture in place of `albedo`.
+    pub albedo_texture: Option<TextureMap>,
 }
 
 impl Default for Diffuse {
     fn default() -> Self {
         Self {
             albedo: Vec3::splat(0.5),
+            albedo_texture: None,
         }
     }
 }

@@ -8,7 +8,7 @@
 //! Conventions: right-handed, Y up, metres; degrees in files. Colours are linear RGB with Rec.709 primaries. Light is
 //! radiometric. Whatever places a prim is in `f64`, so that a scene ten kilometres away keeps its precision.
 //!
-//! Deliberately absent is everything that no stage renders yet: textures, volumes, motion, lenses. A field that exists
+//! Deliberately absent is everything that no stage renders yet: volumes, motion, lenses. A field that exists
 //! and cannot be served yet (`Dielectric.dispersion`, `EnvironmentLight.file`) is refused with its place.
 
 mod camera;
@@ -22,6 +22,7 @@ mod render;
 mod structure;
 #[cfg(test)]
 mod tests;
+mod texture;
 
 pub use camera::Camera;
 pub use film::{Film, FilterKind, ToneMap};
@@ -34,6 +35,7 @@ pub use material::{Conductor, Dielectric, Diffuse, Plastic};
 pub use principled::Principled;
 pub use render::{CausticMethod, DirectMethod, IndirectMethod, LightTransport, Render, SpecularMethod};
 pub use structure::{LookAt, MaterialBinding, Transform};
+pub use texture::{TextureChannel, TextureEncoding, TextureFilter, TextureMap, TextureWrap};
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::reflect::ReflectComponent;

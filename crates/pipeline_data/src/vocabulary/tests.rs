@@ -1,4 +1,4 @@
-use super::VocabularyPlugin;
+use super::{Diffuse, TextureChannel, TextureEncoding, TextureFilter, TextureMap, TextureWrap, VocabularyPlugin};
 use bevy_app::App;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use scene_format::{ComponentInfo, Options, Schema, load_str, schema_text};
@@ -11,7 +11,7 @@ Conductor       | metal ? | eta ? | k ? | f0 ? | reflectance (1, 1, 1) | roughne
 Cuboid          | size (1, 1, 1)
 Cylinder        | radius 1 | height 1 | capped true
 Dielectric      | ior 1.5 | roughness 0 | energy_compensation true | tint (1, 1, 1) | absorption (0, 0, 0) | dispersion ? | thin false | priority 0
-Diffuse         | albedo (0.5, 0.5, 0.5)
+Diffuse         | albedo (0.5, 0.5, 0.5) | albedo_texture ?
 Disc            | radius 1
 DistantLight    | irradiance (1, 1, 1) | angle 0.53
 Emission        | radiance (1, 1, 1) | power ? | two_sided false
@@ -20,10 +20,10 @@ Film            | resolution (512, 512) | filter BlackmanHarris | filter_radius 
 LightTransport  | direct SampleLights | specular Trace | caustic PhotonMap | indirect PathTrace | specular_alpha 0.05
 LookAt          | target - | up (0, 1, 0)
 MaterialBinding | target -
-Mesh            | file - | mesh ? | primitive ? | smooth true
+Mesh            | file - | mesh ? | primitive ? | smooth true | colors true
 Plastic         | albedo (0.5, 0.5, 0.5) | ior 1.5 | roughness 0.1
 PointLight      | power (1, 1, 1) | intensity ?
-Principled      | base_color (0.5, 0.5, 0.5) | metallic 0 | roughness 0.5 | ior 1.5 | specular 1 | specular_color (1, 1, 1) | transmission 0 | thickness 0 | attenuation_color (1, 1, 1) | attenuation_distance ? | priority 0 | clearcoat 0 | clearcoat_roughness 0 | sheen (0, 0, 0) | sheen_roughness 0 | emission (0, 0, 0) | alpha 1
+Principled      | base_color (0.5, 0.5, 0.5) | base_color_texture ? | metallic 0 | metallic_texture ? | roughness 0.5 | roughness_texture ? | ior 1.5 | specular 1 | specular_texture ? | specular_color (1, 1, 1) | specular_color_texture ? | transmission 0 | transmission_texture ? | thickness 0 | attenuation_color (1, 1, 1) | attenuation_distance ? | priority 0 | clearcoat 0 | clearcoat_texture ? | clearcoat_roughness 0 | clearcoat_roughness_texture ? | sheen (0, 0, 0) | sheen_texture ? | sheen_roughness 0 | sheen_roughness_texture ? | emission (0, 0, 0) | emission_texture ? | alpha 1 | alpha_texture ? | alpha_cutoff ? | normal_texture ? | normal_scale 1
 Quad            | size (1, 1)
 Render          | camera - | samples 64 | max_depth ? | seed 0 | passes ?
 Sphere          | radius 1
@@ -169,4 +169,107 @@ fn either_or_fields_exclude_each_other() {
     }
     assert!(refusal("Conductor: (eta: (1, 1, 1))").contains("`eta` needs `k` too"));
     assert_eq!(refusal("Conductor: (eta: (1, 1, 1), k: (1, 1, 1))"), "no error");
+}
+
+/// Composes a scene of one material without looking for files.
+fn composed<T>(component: &str, use_it: impl FnOnce(&Schema<'_>, &scene_format::Scene) -> T) -> T {
+    let text = format!(r#"Layer(prims: {{"/Scene": Def({component})}})"#);
+    let options = Options {
+        check_assets: false,
+        ..Options::default()
+    };
+    with_schema(|schema| {
+        let scene = load_str("scene.ron", &text, schema, &options).unwrap_or_else(|errors| panic!("{errors}"));
+        use_it(schema, &scene)
+    })
+}
+
+fn albedo_texture(value: &str) -> TextureMap {
+    composed(&format!("Diffuse: (albedo_texture: {value})"), |schema, scene| {
+        let built = scene.prims[0].components[0].build(schema, 0.0).take::<Diffuse>();
+        built.expect("a `Diffuse`").albedo_texture.expect("a texture")
+    })
+}
+
+#[test]
+fn a_texture_is_a_file_or_a_file_with_more() {
+    let short = albedo_texture(r#""wood.png""#);
+    assert_eq!(short.file.0, "wood.png");
+    assert_eq!(short, albedo_texture(r#"(file: "wood.png")"#));
+    assert_eq!(short.scale, glam::Vec2::ONE);
+    assert_eq!(short.factor, glam::Vec3::ONE);
+    let long = albedo_texture(
+        r#"(file: "a.glb", image: 2, uv_set: 1, wrap_u: Mirror, wrap_v: Clamp, filter: Nearest, translate: (0.5, 1),
+            rotate: -90, scale: (4, 2), encoding: Srgb, channel: A, factor: (0.5, 1, 2))"#,
+    );
+    assert_eq!((long.image, long.uv_set, long.rotate), (Some(2), 1, -90.0));
+    assert_eq!((long.wrap_u, long.wrap_v), (TextureWrap::Mirror, TextureWrap::Clamp));
+    assert_eq!(
+        (long.filter, long.encoding),
+        (TextureFilter::Nearest, TextureEncoding::Srgb)
+    );
+    assert_eq!((long.channel, long.factor.z), (TextureChannel::A, 2.0));
+    assert_eq!((long.translate.y, long.scale.x), (1.0, 4.0));
+}
+
+#[test]
+fn what_is_wrong_inside_of_a_texture_is_named() {
+    for (bad, note) in [
+        (
+            r#"(file: "a.png", wrap: Clamp)"#,
+            "Unexpected field named `wrap`, expected one of `file`",
+        ),
+        (r#"(scale: (2, 2))"#, "missing field named `file`"),
+        (r#"(file: "a.png", file: "b.png")"#, "duplicate field named `file`"),
+        (r#"(file: "a.png", factor: (1, -2, 1))"#, "a `factor` of at least 0"),
+        (
+            r#"(file: "a.png", wrap_u: Round)"#,
+            "one of `Repeat`, `Mirror`, or `Clamp`",
+        ),
+        ("7", "must be a file, or (file: .., "),
+    ] {
+        let message = refusal(&format!("Diffuse: (albedo_texture: {bad})"));
+        assert!(
+            message.contains("error[wrong-type]") && message.contains(note),
+            "{bad}: {message}"
+        );
+        assert!(message.contains("scene.ron:1:"), "{bad}: {message}");
+    }
+    let endless = refusal(r#"Diffuse: (albedo_texture: (file: "a.png", rotate: inf))"#);
+    assert!(endless.contains("error[not-finite]"), "{endless}");
+}
+
+#[test]
+fn textures_count_in_the_hash_and_survive_flattening() {
+    let hash = |value: &str| composed(&format!("Diffuse: (albedo_texture: {value})"), |_, scene| scene.hash);
+    assert_eq!(hash(r#""a.png""#), hash(r#"(file: "a.png", uv_set: 0)"#));
+    for other in [
+        r#""b.png""#,
+        r#"(file: "a.png", wrap_v: Clamp)"#,
+        r#"(file: "a.png", factor: (1, 1, 2))"#,
+    ] {
+        assert_ne!(hash(r#""a.png""#), hash(other), "{other}");
+    }
+    let component = r#"Principled: (normal_texture: (file: "n.png", scale: (0.5, 2), channel: G, image: 3))"#;
+    composed(component, |schema, scene| {
+        let flat = scene_format::flatten_ron(scene);
+        let again = load_str(
+            "flat.ron",
+            &flat,
+            schema,
+            &Options {
+                check_assets: false,
+                ..Options::default()
+            },
+        )
+        .unwrap_or_else(|errors| panic!("{flat}\n{errors}"));
+        assert_eq!(again.hash, scene.hash, "{flat}");
+        let json = scene_format::flatten_json(scene);
+        assert!(
+            json.contains(r#""channel":"G""#) && json.contains(r#""file":"n.png""#),
+            "{json}"
+        );
+        let explained = scene_format::explain(scene, "/Scene.normal_texture").expect("an opinion");
+        assert!(explained.contains("n.png") && explained.contains("wins"), "{explained}");
+    });
 }

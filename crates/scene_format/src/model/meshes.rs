@@ -1,7 +1,8 @@
-//! The meshes of a model file, read one by one from a file that is parsed once.
+//! The meshes and images of a model file, read one by one from a file that is parsed once.
 
 use std::path::PathBuf;
 
+use super::error::Fault;
 use super::gltf::GltfMeshes;
 use super::obj::ObjMeshes;
 use super::{ModelError, ModelFile, ModelKind, not_a_model};
@@ -17,7 +18,7 @@ pub struct MeshPart {
     pub primitive: Option<u32>,
 }
 
-/// A model file whose meshes can be read.
+/// A model file whose meshes and images can be read.
 #[derive(Debug)]
 pub struct Model<'a> {
     file: ModelFile<'a>,
@@ -62,6 +63,26 @@ impl<'a> Model<'a> {
         let read = match &mut self.meshes {
             Meshes::Gltf(meshes) => meshes.read(part, &self.file),
             Meshes::Obj(meshes) => meshes.read(part, &self.file),
+        };
+        read.map_err(|fault| fault.in_file(self.file.name))
+    }
+
+    /// Reads an image of a glTF file, encoded as it is there: PNG or JPEG, if the file keeps to its format.
+    ///
+    /// - `number`: index in the file's `images`.
+    ///
+    /// # Errors
+    ///
+    /// For an image that does not exist, for a file that cannot be read or lies outside of the root, for data that is
+    /// not where it should be, for files that together pass the limit of bytes, for an OBJ file.
+    ///
+    /// Cost: a copy of the bytes; files are read once.
+    pub fn image(&mut self, number: u32) -> Result<Vec<u8>, ModelError> {
+        let read = match &mut self.meshes {
+            Meshes::Gltf(meshes) => meshes.image(number, &self.file),
+            Meshes::Obj(_) => {
+                Err(Fault::unsupported("", "an OBJ file holds no images").remedy("name the image's own file"))
+            }
         };
         read.map_err(|fault| fault.in_file(self.file.name))
     }

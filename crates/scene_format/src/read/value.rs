@@ -9,6 +9,7 @@ use ron::value::RawValue;
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, Visitor};
 
 use super::{Reader, check, syntax, value_options};
+use crate::attributes::Shorthand;
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::layer::{FieldOpinion, ListEdit};
 use crate::lex;
@@ -120,6 +121,8 @@ impl Reader<'_, '_> {
             if raw.starts_with('"') {
                 diagnostic = diagnostic.note("values that the program knows are written without quotes");
             }
+        } else if let Some(note) = complaint(held.unwrap_or(field.type_info), &error.code) {
+            diagnostic = diagnostic.note(note);
         } else if lex::has_number_range(raw) {
             diagnostic = diagnostic.note("ranges of numbers are not values");
         } else if let Some(count) = wanted.split(' ').next().and_then(|word| word.parse().ok()) {
@@ -192,6 +195,15 @@ impl Reader<'_, '_> {
             }
         }
         fine
+    }
+}
+
+/// What a type that reads itself says is wrong.
+fn complaint(info: &TypeInfo, error: &ron::Error) -> Option<String> {
+    let reads_itself = info.as_struct().is_ok_and(|found| found.has_attribute::<Shorthand>());
+    match error {
+        ron::Error::Message(text) if reads_itself => Some(text.clone()),
+        _ => None,
     }
 }
 

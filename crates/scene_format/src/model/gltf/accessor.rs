@@ -193,7 +193,8 @@ pub(super) fn check_views(root: &Root) -> Result<(), Fault> {
     (0..root.buffer_views.len()).try_for_each(|view| check_view(root, view))
 }
 
-fn check_view(root: &Root, number: usize) -> Result<(), Fault> {
+/// Checks that a buffer view lies within its buffer, and its stride.
+pub(super) fn check_view(root: &Root, number: usize) -> Result<(), Fault> {
     let view = &root.buffer_views[number];
     let at = |field: &str| format!("bufferViews[{number}].{field}");
     let buffer = root

@@ -1,4 +1,4 @@
-//! The bytes of buffers, read when a mesh needs them, each file once.
+//! The bytes of buffers, read when a mesh or an image needs them, each file once.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -81,6 +81,17 @@ impl Buffers {
         }
         self.sources[buffer] = Some(source);
         Ok(())
+    }
+
+    /// Reads what a URI means, which is no buffer. Files count like those of buffers.
+    pub(super) fn read_uri(&mut self, uri: &str, at: &str, model: &ModelFile<'_>) -> Result<Vec<u8>, Fault> {
+        match locate(uri, at, model)? {
+            Located::Data(data) => Ok(data),
+            Located::File(path) => {
+                let row = self.load_file(path, at)?;
+                Ok(self.files[row].1.clone())
+            }
+        }
     }
 
     fn load_file(&mut self, path: PathBuf, at: &str) -> Result<usize, Fault> {

@@ -8,6 +8,7 @@ use super::super::{ModelFile, ModelLimits};
 use super::buffers::Buffers;
 use super::document::Document;
 use super::graph::no_such;
+use super::image;
 use super::json::Mesh;
 use super::primitive::{Shape, is_drawn};
 use super::triangles::{Data, read};
@@ -21,7 +22,7 @@ const COST_PER_BYTE: u64 = 32;
 /// Triangles and vertices that may be made of a file, however small it is.
 const LEAST_COST: u64 = 1_000_000;
 
-/// A file whose meshes can be read.
+/// A file whose meshes and images can be read.
 #[derive(Debug)]
 pub(in crate::model) struct GltfMeshes {
     document: Document,
@@ -87,6 +88,11 @@ impl GltfMeshes {
             Unusable::TooWide => Fault::limit(&at, "its positions are further apart than single precision can hold")
                 .remedy("scale the model down"),
         })
+    }
+
+    /// Reads the bytes of an image.
+    pub(in crate::model) fn image(&mut self, number: u32, file: &ModelFile<'_>) -> Result<Vec<u8>, Fault> {
+        image::read(number, &self.document, &mut self.buffers, file)
     }
 
     fn read_primitive(&mut self, mesh: usize, primitive: usize, file: &ModelFile<'_>) -> Result<RawMesh, Fault> {

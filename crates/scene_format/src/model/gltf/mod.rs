@@ -12,6 +12,7 @@ mod container;
 mod document;
 mod elements;
 mod graph;
+mod image;
 mod json;
 mod lamp;
 mod material;

@@ -3,6 +3,7 @@
 mod broken;
 mod document;
 mod gltf;
+mod images;
 mod meshes;
 mod mutate;
 mod obj;
