@@ -1,6 +1,7 @@
 use bevy_ecs::component::Component;
 use bevy_ecs::resource::Resource;
 use glam::{DAffine3, DVec3};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The composed scene file: every value with its opinions and places. Written by `load`, read by whoever raises errors.
@@ -46,6 +47,10 @@ pub struct Acceleration(pub Option<spatial::RayScene>);
 /// Geometry, materials and lights as light transport reads them. Written by `tables`, read by every stage that traces.
 #[derive(Resource)]
 pub struct TransportScene(pub transport::Scene);
+
+/// The pictures of surroundings that the scene names, by the prim with the `EnvironmentLight`. Written by `load`.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct EnvironmentMaps(pub BTreeMap<PrimIndex, Arc<transport::EnvironmentMap>>);
 
 /// The camera that the render looks through. Written by `tables`.
 #[derive(Resource, Clone, Debug)]

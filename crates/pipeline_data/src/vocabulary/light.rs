@@ -108,7 +108,8 @@ impl Default for DistantLight {
 #[derive(Component, Reflect, Clone, Debug)]
 #[reflect(Component, Default)]
 pub struct EnvironmentLight {
-    /// A picture of the surroundings. Not supported yet.
+    /// A picture of the surroundings by latitude and longitude, `.exr` or `.hdr` (or any other picture): its middle lies
+    /// towards +Z, its left edge towards −Z, its upper edge is the zenith. A rotation of the prim turns it.
     #[reflect(@Exclusive::group("source"))]
     pub file: Option<AssetPath>,
     /// The same radiance from everywhere.

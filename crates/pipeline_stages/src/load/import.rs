@@ -204,14 +204,14 @@ impl Oddities {
 }
 
 /// Reads a file up to one byte more than `limit`, so that a longer one can be told.
-fn read(path: &Path, limit: u64) -> std::io::Result<Vec<u8>> {
+pub(super) fn read(path: &Path, limit: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
 /// Names a file the way the scene was named: below its folder if it lies there.
-fn shown_path(path: &Path, scene: &Path) -> String {
+pub(super) fn shown_path(path: &Path, scene: &Path) -> String {
     let folder = scene.parent().unwrap_or(Path::new(""));
     let canonical = if folder.as_os_str().is_empty() {
         Path::new(".")

@@ -5,7 +5,8 @@
 //! composes the file into [`ComposedScene`]; `spawn_prims` turns every rendered prim into an entity with
 //! [`PrimIndex`](pipeline_data::PrimIndex) and the components that the scene writes, as they are at the scene's frame;
 //! `import_meshes` brings the files that `Mesh` names into the [`MeshStore`](pipeline_data::MeshStore), each once, and
-//! mixes their bytes into the scene's hash.
+//! mixes their bytes into the scene's hash; `import_environments` does the same with the pictures of
+//! `EnvironmentLight` ([`EnvironmentMaps`](pipeline_data::EnvironmentMaps)).
 //!
 //! What a scene may say is what plug-ins registered: see [`is_scene_component`](pipeline_data::vocabulary::is_scene_component). What is wrong goes to the
 //! [`Report`](pipeline_core::Report) with place and remedy; the following systems then find no scene and do nothing.
@@ -16,6 +17,7 @@
 //! neither skins nor morph targets move them.
 
 mod compose;
+mod environment;
 mod import;
 mod spawn;
 #[cfg(test)]
@@ -24,7 +26,7 @@ mod tests;
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use pipeline_core::{Load, LoadSystems};
-use pipeline_data::ComposedScene;
+use pipeline_data::{ComposedScene, EnvironmentMaps};
 use pipeline_data::vocabulary::VocabularyPlugin;
 
 /// Reads the scene file of the render request. Brings the core vocabulary with it.
@@ -35,14 +37,15 @@ impl Plugin for LoadPlugin {
         if !app.is_plugin_added::<VocabularyPlugin>() {
             app.add_plugins(VocabularyPlugin);
         }
-        app.add_systems(
+        app.init_resource::<EnvironmentMaps>().add_systems(
             Load,
             (
                 compose::compose_scene.in_set(LoadSystems::Compose),
                 spawn::spawn_prims
                     .in_set(LoadSystems::Spawn)
                     .run_if(resource_exists::<ComposedScene>),
-                import::import_meshes
+                (import::import_meshes, environment::import_environments)
+                    .chain()
                     .in_set(LoadSystems::ImportAssets)
                     .run_if(resource_exists::<ComposedScene>),
             ),

@@ -1,4 +1,4 @@
-use super::frame::moving_frame;
+use super::frame::{moving_frame, rotation_of};
 use super::materials::MaterialTable;
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, Vec3};
@@ -7,7 +7,9 @@ use pipeline_data::vocabulary::{
     DistantLight, Emission, EnvironmentLight, Findings, PointLight, SceneReport, SpotLight, component_place,
     field_place,
 };
-use pipeline_data::{Acceleration, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, WorldMotion, WorldTransform};
+use pipeline_data::{
+    Acceleration, EnvironmentMaps, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, WorldMotion, WorldTransform,
+};
 use radiometry::{Rgb, math};
 use scene_format::{Diagnostic, Place, Scene};
 use std::collections::BTreeMap;
@@ -45,6 +47,7 @@ struct Collector<'a> {
     acceleration: &'a Acceleration,
     instance_of_prim: BTreeMap<u32, u32>,
     origin: &'a SceneOrigin,
+    maps: &'a EnvironmentMaps,
     findings: Findings,
     list: LightList,
     /// First light that does not shine.
@@ -60,6 +63,7 @@ pub(super) fn list_lights(
     instances: Res<InstancePrims>,
     materials: Res<MaterialTable>,
     origin: Res<SceneOrigin>,
+    maps: Res<EnvironmentMaps>,
     mut counters: ResMut<Counters>,
     mut list: ResMut<LightList>,
     lights: Query<LightPrim<'_>, IsLight>,
@@ -72,6 +76,7 @@ pub(super) fn list_lights(
             .map(|(instance, prim)| (*prim, instance))
             .collect(),
         origin: &origin,
+        maps: &maps,
         findings: Findings::default(),
         list: LightList::default(),
         dark: None,
@@ -96,7 +101,7 @@ pub(super) fn list_lights(
             collector.add_distant(prim, distant, world, motion);
         }
         if let Some(environment) = environment {
-            collector.add_environment(prim, environment);
+            collector.add_environment(prim, environment, world);
         }
     }
     for (instance, glow) in (0..).zip(&materials.glow_of_instance) {
@@ -268,15 +273,8 @@ impl Collector<'_> {
         self.add(prim, "DistantLight", irradiance, source);
     }
 
-    fn add_environment(&mut self, prim: u32, light: &EnvironmentLight) {
+    fn add_environment(&mut self, prim: u32, light: &EnvironmentLight, world: &WorldTransform) {
         let place = component_place(self.scene, prim, "EnvironmentLight");
-        if light.file.is_some() {
-            let finding = Diagnostic::error("not-supported-yet", "`EnvironmentLight.file` is not supported yet")
-                .note("a uniform environment is `EnvironmentLight: (radiance: (1, 1, 1))`");
-            self.findings
-                .push_at(field_place(self.scene, prim, "EnvironmentLight", &["file"]), finding);
-            return;
-        }
         if let Some(first) = self.environment {
             let message = format!(
                 "both `{}` and `{}` carry `EnvironmentLight`",
@@ -292,13 +290,22 @@ impl Collector<'_> {
             return;
         }
         self.environment = Some(prim);
-        let radiance = Rgb::from(light.radiance) * light.scale;
-        self.add(
-            prim,
-            "EnvironmentLight",
+        let map = self.maps.0.get(&PrimIndex(prim)).cloned();
+        if light.file.is_some() && map.is_none() {
+            // It could not be read, which was reported.
+            return;
+        }
+        let radiance = match &map {
+            Some(_) => Rgb::splat(light.scale),
+            None => Rgb::from(light.radiance) * light.scale,
+        };
+        let environment = Environment {
             radiance,
-            LightSource::Environment(Environment::uniform(radiance)),
-        );
+            map_from_world: rotation_of(world).transpose(),
+            map,
+        };
+        let strength = environment.fluence();
+        self.add(prim, "EnvironmentLight", strength, LightSource::Environment(environment));
     }
 
     /// Refuses a scene without light; one without geometry too, unless its environment can be seen.

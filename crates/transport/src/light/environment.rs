@@ -36,7 +36,8 @@ impl Environment {
     }
 
     /// Radiance that arrives from all directions together, ∫ L dω in W·m⁻².
-    pub(crate) fn fluence(&self) -> Rgb {
+    #[must_use]
+    pub fn fluence(&self) -> Rgb {
         match &self.map {
             None => self.radiance * (2.0 * TAU),
             Some(map) => self.radiance * map.fluence,
