@@ -76,7 +76,7 @@ fn fused(world: &World) -> Film {
                 let lens = SampleStream::new(seed, CAMERA, domain, sample);
                 let position =
                     Vec2::new(pixel.x as f32 + 0.5, pixel.y as f32 + 0.5) + filter.sample(lens.draw_2d(0, 0));
-                let mut ray = camera.ray(position);
+                let mut ray = camera.ray(position, 0.0);
                 let mut path = Path::from_eye(0, SampleStream::new(seed, PATH, domain, sample));
                 let mut layers = [[0.0_f32; 3]; 5];
                 let (mut alpha, mut aux) = (0.0, [0.0; 7]);
