@@ -18,8 +18,8 @@ pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
 pub use photon::{CausticPhoton, Photon};
 pub use request::RenderRequest;
 pub use scene::{
-    Acceleration, CameraFrame, ComposedScene, EnvironmentMaps, InstancePrims, PrimIndex, SceneOrigin, ShutterInterval, TransportScene,
-    WorldMotion, WorldTransform,
+    Acceleration, CameraFrame, ComposedScene, EnvironmentMaps, InstancePrims, PrimIndex, SceneOrigin, ShutterInterval,
+    TransportScene, WorldMotion, WorldTransform,
 };
 pub use settings::RenderSettings;
 pub use stream::{

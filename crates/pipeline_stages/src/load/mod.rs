@@ -26,8 +26,8 @@ mod tests;
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use pipeline_core::{Load, LoadSystems};
-use pipeline_data::{ComposedScene, EnvironmentMaps};
 use pipeline_data::vocabulary::VocabularyPlugin;
+use pipeline_data::{ComposedScene, EnvironmentMaps};
 
 /// Reads the scene file of the render request. Brings the core vocabulary with it.
 pub struct LoadPlugin;

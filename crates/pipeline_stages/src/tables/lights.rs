@@ -305,7 +305,12 @@ impl Collector<'_> {
             map,
         };
         let strength = environment.fluence();
-        self.add(prim, "EnvironmentLight", strength, LightSource::Environment(environment));
+        self.add(
+            prim,
+            "EnvironmentLight",
+            strength,
+            LightSource::Environment(environment),
+        );
     }
 
     /// Refuses a scene without light; one without geometry too, unless its environment can be seen.

@@ -166,6 +166,7 @@ impl Rows<'_> {
             } else {
                 continue;
             };
+            let needs_inside = material.has_inside();
             let row = self.add(material);
             self.of_prim.insert(
                 prim,
@@ -173,7 +174,7 @@ impl Rows<'_> {
                     row,
                     prim,
                     component: names.first().copied().unwrap_or_default(),
-                    needs_inside: material.bsdf.has_inside(),
+                    needs_inside,
                     glow: principled.map_or(Rgb::BLACK, |principled| principled.emission.into()),
                 },
             );

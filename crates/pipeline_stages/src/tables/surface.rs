@@ -77,6 +77,7 @@ pub(super) fn dielectric_material(
             dispersion: dielectric
                 .dispersion
                 .map(|abbe| Dispersion::from_abbe(dielectric.ior, abbe)),
+            ..Material::default()
         };
     }
     if dielectric.roughness > 0.0 {
@@ -145,7 +146,7 @@ pub(super) fn principled_material(
         bsdf,
         absorption,
         priority: principled.priority,
-        dispersion: None,
+        ..Material::default()
     }
 }
 
