@@ -96,7 +96,7 @@ fn ring() -> Scene {
     ];
     let materials = bsdfs.map(|bsdf| Material {
         bsdf,
-        absorption: Rgb::BLACK,
+        ..Material::default()
     });
     let light = LightSource::Area {
         instance: 2,

@@ -22,15 +22,28 @@ impl<T> Input<T> {
 }
 
 impl Input<Rgb> {
+    /// The value at a point of a surface.
     #[inline]
-    fn at(&self, rays: &RayScene, point: &SurfacePoint) -> Rgb {
+    #[must_use]
+    pub fn at(&self, rays: &RayScene, point: &SurfacePoint) -> Rgb {
         match self {
             Self::Constant(colour) => *colour,
             Self::Texture(texture) => texture.rgb(rays.uv_set(point, texture.uv_set)),
         }
     }
 
-    fn max(&self) -> Rgb {
+    /// Mean value. Cost: a look at every texel.
+    #[must_use]
+    pub fn mean(&self) -> Rgb {
+        match self {
+            Self::Constant(colour) => *colour,
+            Self::Texture(texture) => texture.mean_rgb(),
+        }
+    }
+
+    /// Greatest value, channel by channel. Cost: a look at every texel.
+    #[must_use]
+    pub fn max(&self) -> Rgb {
         match self {
             Self::Constant(colour) => *colour,
             Self::Texture(texture) => texture.max_rgb(),

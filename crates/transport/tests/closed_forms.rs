@@ -226,7 +226,7 @@ fn photons_in_a_closed_black_box_carry_the_flux_of_the_light() {
             radiance: Rgb::WHITE,
             two_sided,
         };
-        let flux = flux_in_black_box(light, &[lamp]);
+        let flux = flux_in_black_box(light, &[lamp.clone()]);
         let expected = std::f32::consts::PI * 0.5 * sides;
         assert!(
             (flux.g - expected).abs() < 2e-3 * expected,
@@ -257,7 +257,7 @@ fn aimed_emission_lands_the_same_flux_as_uniform_emission() {
         vec![LightSource::Environment(Environment::uniform(Rgb::WHITE))],
     ];
     for lights in sources {
-        let scene = scene(&[ball, lamp], lights);
+        let scene = scene(&[ball.clone(), lamp.clone()], lights);
         let landed = |sampler: &EmissionSampler<'_>| {
             let emitted = 1 << 16;
             let (mut flux, mut count) = (0.0_f64, 0);

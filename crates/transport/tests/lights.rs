@@ -236,7 +236,7 @@ fn a_rough_mirror_sees_a_sun_by_both_techniques() {
             LightSource::Environment(Environment::uniform(Rgb::WHITE)),
             distant(30.0),
         ];
-        let both = scene(&[(shape, floor(), mirror)], lights);
+        let both = scene(&[(shape, floor(), mirror.clone())], lights);
         let sun = scene(&[(shape, floor(), mirror)], vec![distant(30.0)]);
         let ray = Ray::new(Vec3::new(0.0, 1.0, 0.0), Vec3::NEG_Y);
         let (both, sun) = (colour(&both, ray, 1 << 14)[1], colour(&sun, ray, 1 << 14)[1]);

@@ -15,6 +15,7 @@ fn clear(ior: f32, absorption: f32, priority: i8) -> Material {
         absorption: Rgb::splat(absorption),
         priority,
         dispersion: None,
+        ..Material::default()
     }
 }
 
@@ -151,7 +152,7 @@ fn prism(dispersion: Option<Dispersion>) -> Material {
 fn dispersive_glass_is_white_in_a_white_furnace_and_colours_an_edge() {
     let flint = Dispersion::from_abbe(1.5, 15.0);
     let ball = (Shape::Sphere { radius: 1.0 }, DAffine3::IDENTITY, prism(Some(flint)));
-    let furnace = scene(&[ball], white_sky());
+    let furnace = scene(&[ball.clone()], white_sky());
     let seen = colour(&furnace, Ray::new(Vec3::new(0.8, 0.2, -4.0), Vec3::Z), 1 << 14);
     for channel in seen {
         assert!((channel - 1.0).abs() < 0.01, "{seen:?}");
@@ -177,7 +178,7 @@ fn dispersive_glass_is_white_in_a_white_furnace_and_colours_an_edge() {
         let (mut sums, mut places) = ([0.0; 3], [0.0; 3]);
         for i in 0..80 {
             let x = -8.0 + 0.1 * f64::from(i);
-            let seen = behind(x, glass);
+            let seen = behind(x, glass.clone());
             for c in 0..3 {
                 sums[c] += seen[c];
                 places[c] += x * seen[c];

@@ -63,7 +63,7 @@ fn seen_at(app: &App, x: f32, y: f32) -> (Material, Rgb) {
     let origin = app.world().resource::<SceneOrigin>().0.as_vec3();
     let ray = Ray::new(Vec3::new(x, y, 100.0) - origin, -Vec3::Z);
     let point = scene.rays.surface(&ray, &scene.rays.intersect(&ray).unwrap());
-    (*scene.material(&point), scene.lights.emitted(&point, Vec3::Z))
+    (scene.material(&point).clone(), scene.lights.emitted(&point, Vec3::Z))
 }
 
 /// The message about a scene that is right but for these prims.
