@@ -8,7 +8,7 @@ use std::ops::{Add, Mul};
 
 impl WorldTriangle {
     /// Weights of the second and third vertex at a point of the triangle; zero where it has no area.
-    fn weights(&self, p: DVec3) -> Vec2 {
+    pub(crate) fn weights(&self, p: DVec3) -> Vec2 {
         let [a, b, c] = self.vertices;
         let (along, across, q) = (b - a, c - a, p - a);
         let n = along.cross(across);
@@ -23,7 +23,7 @@ impl WorldTriangle {
 }
 
 /// The value at a point of a triangle of an attribute that the vertices have.
-fn blend<T: Copy + Add<Output = T> + Mul<f32, Output = T>>(
+pub(crate) fn blend<T: Copy + Add<Output = T> + Mul<f32, Output = T>>(
     mesh: &TriangleMesh,
     values: &[T],
     triangle: u32,
