@@ -1,7 +1,7 @@
 use crate::scene::{Material, Scene};
 use glam::Vec3;
 use radiometry::{Rgb, math};
-use scattering::{Bsdf, Crossing, Interior, InteriorList};
+use scattering::{Bsdf, Crossing, Interior, InteriorList, SampledWavelength};
 use spatial::{Ray, SurfacePoint, spawn_origin};
 
 /// What a path travels in, from the eye or from a light.
@@ -26,9 +26,24 @@ impl PathMedium {
         self.wavelength > 0.0
     }
 
-    /// Fixes the wavelength, in nm.
-    pub(crate) fn set_wavelength(&mut self, wavelength: f32) {
-        self.wavelength = wavelength;
+    /// Draws the wavelength where a path that stands for all of them meets a surface that tells them apart.
+    ///
+    /// - `u`: gives a number in [0, 1).
+    /// - returns the factor for what the path carries.
+    #[inline]
+    pub(crate) fn disperse(&mut self, scene: &Scene, point: &SurfacePoint, u: impl FnOnce() -> f32) -> Option<Rgb> {
+        if !scene.passage(point).is_dispersive || self.has_wavelength() {
+            return None;
+        }
+        let drawn = SampledWavelength::new(u());
+        self.wavelength = drawn.wavelength;
+        Some(drawn.weight)
+    }
+
+    /// True in no material; there is nothing to keep account of then.
+    #[inline]
+    fn is_vacuum(&self) -> bool {
+        self.interiors.current().is_none()
     }
 
     /// Tells that the path goes through the surface at `point` in direction `wi`.
@@ -60,8 +75,10 @@ impl PathMedium {
     pub(crate) fn transmittance(&self, scene: &Scene, ray: &Ray, point: Option<&SurfacePoint>, distance: f32) -> Rgb {
         let absorption = match (self.interiors.current(), point) {
             (Some(row), _) => scene.material_by_row(row).absorption,
-            (None, Some(point)) if ray.direction.dot(point.ng) > 0.0 => scene.material(point).absorption,
-            (None, _) => Rgb::BLACK,
+            (None, Some(point)) if scene.passage(point).has_inside && ray.direction.dot(point.ng) > 0.0 => {
+                scene.material(point).absorption
+            }
+            (None, _) => return Rgb::WHITE,
         };
         transmittance(absorption, distance)
     }
@@ -72,7 +89,7 @@ impl PathMedium {
     /// - `wo`: the side that the path arrives from.
     #[inline]
     pub(crate) fn adapt(&self, scene: &Scene, material: &Material, bsdf: Bsdf, point: &SurfacePoint, wo: Vec3) -> Bsdf {
-        if self.interiors.current().is_none() && !self.has_wavelength() {
+        if self.is_vacuum() && !self.has_wavelength() {
             return bsdf;
         }
         let Some(interior) = scene.interior(point) else {
@@ -123,6 +140,9 @@ pub(crate) fn follow(scene: &Scene, medium: &mut PathMedium, ray: &Ray) -> (Opti
             return (None, left);
         };
         let point = scene.rays.surface(&segment, &hit);
+        if medium.is_vacuum() && scene.passage(&point).is_plain() {
+            return (Some(point), left);
+        }
         left *= medium.transmittance(scene, &segment, Some(&point), hit.t);
         if !medium.hides(scene, &point, segment.direction) {
             return (Some(point), left);

@@ -3,7 +3,7 @@ use crate::path_class::{Event, Layer, Methods, PathClass};
 use crate::scene::Scene;
 use crate::vertex::Vertex;
 use radiometry::{Rgb, SampleStream, warp};
-use scattering::{SampledWavelength, Transport};
+use scattering::Transport;
 use spatial::{Ray, SurfacePoint, spawn_origin};
 
 /// A path from the eye, between two bounces. 84 bytes.
@@ -67,13 +67,11 @@ pub(crate) const ROULETTE_MAX: f32 = 0.95;
 pub fn arrive(scene: &Scene, path: &mut Path, ray: &Ray) -> Option<SurfacePoint> {
     let (point, left) = follow(scene, &mut path.medium, ray);
     path.throughput *= left;
-    if let Some(point) = &point
-        && scene.material(point).dispersion.is_some()
-        && !path.medium.has_wavelength()
-    {
-        let drawn = SampledWavelength::new(path.stream.draw_1d(path.depth, dimension::WAVELENGTH));
-        path.medium.set_wavelength(drawn.wavelength);
-        path.throughput *= drawn.weight;
+    if let Some(point) = &point {
+        let u = || path.stream.draw_1d(path.depth, dimension::WAVELENGTH);
+        if let Some(weight) = path.medium.disperse(scene, point, u) {
+            path.throughput *= weight;
+        }
     }
     point
 }

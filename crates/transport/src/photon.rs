@@ -6,7 +6,7 @@ use crate::scene::Scene;
 use crate::vertex::Vertex;
 use glam::Vec3;
 use radiometry::{Rgb, SampleStream, StageKey};
-use scattering::{SampledWavelength, Transport};
+use scattering::Transport;
 use spatial::{Ray, spawn_origin};
 
 /// Key of the random numbers of photons.
@@ -125,10 +125,9 @@ pub fn trace_photon(
             return;
         };
         flux *= left;
-        if scene.material(&point).dispersion.is_some() && !medium.has_wavelength() {
-            let drawn = SampledWavelength::new(stream.draw_1d(bounce + 1, dimension::WAVELENGTH));
-            medium.set_wavelength(drawn.wavelength);
-            flux *= drawn.weight;
+        let u = || stream.draw_1d(bounce + 1, dimension::WAVELENGTH);
+        if let Some(weight) = medium.disperse(scene, &point, u) {
+            flux *= weight;
         }
         if flux.is_black() || !flux.is_finite() {
             return;

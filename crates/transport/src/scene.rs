@@ -106,8 +106,37 @@ pub struct Scene {
     material_of_instance: Vec<u32>,
     targets: Vec<TargetSphere>,
     diffuse_area: f64,
+    /// Of each instance.
+    passages: Vec<Passage>,
     may_hide_surfaces: bool,
     has_alpha: bool,
+}
+
+/// What a surface may do to a ray beside stopping it; small, since every hit asks.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Passage {
+    /// Light that passes is in another medium.
+    pub(crate) has_inside: bool,
+    /// Tells wavelengths apart.
+    pub(crate) is_dispersive: bool,
+    /// Is less than whole somewhere.
+    pub(crate) has_alpha: bool,
+}
+
+impl Passage {
+    fn of(material: &Material) -> Self {
+        Self {
+            has_inside: material.has_inside(),
+            is_dispersive: material.dispersion.is_some(),
+            has_alpha: material.has_alpha(),
+        }
+    }
+
+    /// True when the surface stops every ray, and nothing else.
+    #[inline]
+    pub(crate) fn is_plain(self) -> bool {
+        !(self.has_inside || self.is_dispersive || self.has_alpha)
+    }
 }
 
 impl Scene {
@@ -134,7 +163,7 @@ impl Scene {
         let lights = LightTable::new(&rays, lights);
         let material = |i: u32| &materials[material_of_instance[i as usize] as usize];
         let rows = 0..instances as u32;
-        let insides = rows.clone().filter(|i| material(*i).has_inside()).count();
+        let passages: Vec<Passage> = rows.clone().map(|i| Passage::of(material(i))).collect();
         let targets = rows.clone().filter(|i| material(*i).has_specular()).map(|i| {
             let bounds = rays.instance_bounds(i);
             TargetSphere {
@@ -143,7 +172,6 @@ impl Scene {
             }
         });
         let targets = cluster_targets(targets.collect());
-        let has_alpha = rows.clone().any(|i| material(i).has_alpha());
         let diffuse_area = rows
             .filter(|i| material(*i).has_diffuse())
             .map(|i| rays.instance_area(i))
@@ -155,8 +183,9 @@ impl Scene {
             material_of_instance,
             targets,
             diffuse_area,
-            may_hide_surfaces: insides > 1,
-            has_alpha,
+            may_hide_surfaces: passages.iter().filter(|passage| passage.has_inside).count() > 1,
+            has_alpha: passages.iter().any(|passage| passage.has_alpha),
+            passages,
         }
     }
 
@@ -198,12 +227,17 @@ impl Scene {
     /// The medium behind the surface that was hit; `None` where it has no inside.
     #[inline]
     pub(crate) fn interior(&self, point: &SurfacePoint) -> Option<Interior> {
-        let row = self.material_row(point);
-        let material = self.material_by_row(row);
-        material.bsdf.has_inside().then_some(Interior {
-            medium: row,
-            priority: material.priority,
+        self.passage(point).has_inside.then(|| {
+            let medium = self.material_row(point);
+            let priority = self.material_by_row(medium).priority;
+            Interior { medium, priority }
         })
+    }
+
+    /// What the surface that was hit may do to a ray beside stopping it.
+    #[inline]
+    pub(crate) fn passage(&self, point: &SurfacePoint) -> Passage {
+        self.passages[point.instance as usize]
     }
 
     /// True when a surface may lie hidden in the medium of another.
