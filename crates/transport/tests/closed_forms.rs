@@ -74,6 +74,7 @@ fn frosted_glass_shows_a_caustic_from_behind() {
     let light = LightSource::Area {
         instance: 2,
         radiance: Rgb::splat(10.0),
+        texture: None,
         two_sided: false,
     };
     let scene = scene(&shapes, vec![light]);
@@ -128,6 +129,7 @@ fn a_closed_furnace_shines_alike_everywhere() {
     let light = LightSource::Area {
         instance: 0,
         radiance: Rgb::splat(1.0 - albedo),
+        texture: None,
         two_sided: true,
     };
     let scene = scene(&[room], vec![light]);
@@ -224,6 +226,7 @@ fn photons_in_a_closed_black_box_carry_the_flux_of_the_light() {
         let light = LightSource::Area {
             instance: 1,
             radiance: Rgb::WHITE,
+            texture: None,
             two_sided,
         };
         let flux = flux_in_black_box(light, &[lamp.clone()]);
@@ -252,6 +255,7 @@ fn aimed_emission_lands_the_same_flux_as_uniform_emission() {
         vec![LightSource::Area {
             instance: 1,
             radiance: Rgb::WHITE,
+            texture: None,
             two_sided: true,
         }],
         vec![LightSource::Environment(Environment::uniform(Rgb::WHITE))],
@@ -365,6 +369,7 @@ fn photons_and_paths_agree_on_a_caustic() {
     let light = LightSource::Area {
         instance: 0,
         radiance: Rgb::splat(20.0),
+        texture: None,
         two_sided: false,
     };
     let scene = scene(&[lamp, ball, ground], vec![light]);

@@ -266,6 +266,7 @@ fn many_lights(n: u32) -> (Vec<(Shape, DAffine3, Material)>, Vec<LightSource>) {
         lights.push(LightSource::Area {
             instance: shapes.len() as u32 - 1,
             radiance: strength * 20.0,
+            texture: None,
             two_sided: i % 5 == 0,
         });
     }
@@ -349,6 +350,7 @@ fn light_sampling_and_hits_agree_for_all_kinds_at_once() {
     let light = LightSource::Area {
         instance: 0,
         radiance: Rgb::splat(0.7),
+        texture: None,
         two_sided: true,
     };
     let scene = scene(&[room], vec![light]);

@@ -73,6 +73,7 @@ fn an_interface_between_two_media_reflects_by_the_quotient_of_their_indices() {
         vec![LightSource::Area {
             instance: 2,
             radiance: Rgb::WHITE,
+            texture: None,
             two_sided: true,
         }],
     );
@@ -132,6 +133,7 @@ fn a_hidden_surface_does_not_stand_in_the_light() {
         let light = LightSource::Area {
             instance: 2,
             radiance: Rgb::splat(50.0),
+            texture: None,
             two_sided: false,
         };
         let scene = scene(&shapes, vec![light]);
@@ -169,6 +171,7 @@ fn dispersive_glass_is_white_in_a_white_furnace_and_colours_an_edge() {
         let light = LightSource::Area {
             instance: 1,
             radiance: Rgb::WHITE,
+            texture: None,
             two_sided: true,
         };
         let scene = scene(&[(ball.0, ball.1, glass), screen], vec![light]);

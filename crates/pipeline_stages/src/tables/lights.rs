@@ -14,7 +14,8 @@ use radiometry::{Rgb, math};
 use scene_format::{Diagnostic, Place, Scene};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use transport::{Environment, LightSource, MovingFrame, SpotCone};
+use std::sync::Arc;
+use transport::{Environment, Input, LightSource, MovingFrame, SpotCone};
 
 /// All lights that shine, in the order of the scene. On its way to `join_tables`.
 #[derive(Resource, Default)]
@@ -167,6 +168,7 @@ impl Collector<'_> {
         let source = LightSource::Area {
             instance,
             radiance,
+            texture: None,
             two_sided: emission.two_sided,
         };
         self.add(prim, "Emission", radiance, source);
@@ -184,6 +186,10 @@ impl Collector<'_> {
         let source = LightSource::Area {
             instance,
             radiance,
+            texture: match &glow.radiance {
+                Input::Texture(texture) => Some(Arc::new((**texture).clone())),
+                Input::Constant(_) => None,
+            },
             two_sided: false,
         };
         self.add(glow.material, "Principled", radiance, source);
