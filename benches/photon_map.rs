@@ -96,11 +96,12 @@ fn ring() -> Scene {
     ];
     let materials = bsdfs.map(|bsdf| Material {
         bsdf,
-        absorption: Rgb::BLACK,
+        ..Material::default()
     });
     let light = LightSource::Area {
         instance: 2,
         radiance: Rgb::splat(300.0),
+        texture: None,
         two_sided: false,
     };
     Scene::new(rays, materials.to_vec(), vec![0, 1, 2], vec![light])

@@ -16,3 +16,4 @@ mod listing;
 mod program;
 mod rendering;
 mod same_bits;
+mod textures;

@@ -12,6 +12,7 @@ mod request;
 mod scene;
 mod settings;
 mod stream;
+mod texture_store;
 pub mod vocabulary;
 
 pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
@@ -26,3 +27,4 @@ pub use stream::{
     Contribution, ContributionLog, Contributions, FilmBatch, FilmSums, FirstHit, FirstHits, HitStream, PathStream,
     RayStream,
 };
+pub use texture_store::{PictureKey, TextureRole, TextureStore};

@@ -30,6 +30,9 @@ pub struct Limits {
     /// Steps of composition, a place, a layer at a place, a name, a target and so on one each; 200,000,000, which
     /// take a minute or so.
     pub work: usize,
+    /// Pixels of one picture that a field names; 134,217,728, for example 16,384 by 8,192. Files are not opened here:
+    /// it is for who reads the pictures.
+    pub texture_pixels: usize,
 }
 
 impl Default for Limits {
@@ -47,13 +50,14 @@ impl Default for Limits {
             arc_depth: 64,
             index_nodes: 100_000,
             work: 200_000_000,
+            texture_pixels: 1 << 27,
         }
     }
 }
 
 impl Limits {
     /// Names of the limits, for [`Self::set`].
-    pub const NAMES: [&str; 12] = [
+    pub const NAMES: [&str; 13] = [
         "file_bytes",
         "layers",
         "prims",
@@ -66,6 +70,7 @@ impl Limits {
         "arc_depth",
         "index_nodes",
         "work",
+        "texture_pixels",
     ];
 
     /// Sets the limit of a name; false if there is none of that name.
@@ -83,6 +88,7 @@ impl Limits {
             "arc_depth" => &mut self.arc_depth,
             "index_nodes" => &mut self.index_nodes,
             "work" => &mut self.work,
+            "texture_pixels" => &mut self.texture_pixels,
             _ => return false,
         };
         *limit = value;

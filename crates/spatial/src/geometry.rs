@@ -1,5 +1,5 @@
 use crate::{MOST_DISTANT, SpatialError};
-use glam::{DAffine3, Vec2, Vec3};
+use glam::{DAffine3, Vec2, Vec3, Vec4};
 use std::sync::Arc;
 
 /// An analytic shape around its object-space origin; lengths in metres, before the transform of the instance.
@@ -77,8 +77,12 @@ pub struct TriangleMesh {
     pub positions: Vec<Vec3>,
     /// Normals for shading, one for each position; any length but zero. `None`: flat.
     pub normals: Option<Vec<Vec3>>,
-    /// Texture coordinates, one for each position.
+    /// Texture coordinates, one for each position; (0, 0) is the lower left of a picture.
     pub uvs: Option<Vec<Vec2>>,
+    /// Further sets of texture coordinates, from the second on, like `uvs`.
+    pub more_uvs: Vec<Vec<Vec2>>,
+    /// Linear red, green, blue and coverage, one for each position.
+    pub colours: Option<Vec<Vec4>>,
     /// Three rows of `positions` each.
     pub triangles: Vec<[u32; 3]>,
 }
@@ -107,6 +111,15 @@ impl TriangleMesh {
             && edges
                 .chunk_by(|a, b| a.0 == b.0)
                 .all(|same| same.iter().map(|e| e.1).sum::<i32>() == 0)
+    }
+
+    /// A set of texture coordinates, counted from 0, if it is there.
+    #[must_use]
+    pub fn uv_set(&self, set: u32) -> Option<&[Vec2]> {
+        match set {
+            0 => self.uvs.as_deref(),
+            _ => self.more_uvs.get(set as usize - 1).map(Vec::as_slice),
+        }
     }
 
     /// Checks what queries rely on; `geometry` is the row that errors name.
@@ -140,9 +153,13 @@ impl TriangleMesh {
             complete("normal", normals.len())?;
             finite("normal", normals.iter().position(|n| !n.is_finite()))?;
         }
-        if let Some(uvs) = &self.uvs {
+        for uvs in self.uvs.iter().chain(&self.more_uvs) {
             complete("uv", uvs.len())?;
             finite("uv", uvs.iter().position(|uv| !uv.is_finite()))?;
+        }
+        if let Some(colours) = &self.colours {
+            complete("colour", colours.len())?;
+            finite("colour", colours.iter().position(|colour| !colour.is_finite()))?;
         }
         for (triangle, vertices) in self.triangles.iter().enumerate() {
             if let Some(vertex) = vertices.iter().copied().find(|v| *v as usize >= count) {

@@ -49,6 +49,7 @@
     reason = "`!(a < b)` also holds for NaN, which is what is meant"
 )]
 
+mod attributes;
 mod bounds;
 mod error;
 mod geometry;

@@ -140,7 +140,11 @@ impl RayScene {
         let geometry = |g: &Prepared| match g {
             Prepared::Solid(_) => size_of::<Solid>(),
             Prepared::Mesh { mesh, tree } => {
-                let vertex = 12 + mesh.normals.as_ref().map_or(0, |_| 12) + mesh.uvs.as_ref().map_or(0, |_| 8);
+                let uv_sets = mesh.more_uvs.len() + usize::from(mesh.uvs.is_some());
+                let vertex = 12
+                    + mesh.normals.as_ref().map_or(0, |_| 12)
+                    + mesh.colours.as_ref().map_or(0, |_| 16)
+                    + 8 * uv_sets;
                 let own = mesh.positions.len() * vertex + mesh.triangles.len() * 12;
                 own + tree
                     .as_ref()
@@ -177,7 +181,7 @@ impl RayScene {
 /// all that is between.
 fn around(keys: &[DAffine3], bounds: impl Fn(&DAffine3) -> Option<(DVec3, DVec3)>) -> Bounds {
     keys.iter()
-        .filter_map(|m| bounds(m))
+        .filter_map(bounds)
         .fold(Bounds::EMPTY, |all, (low, high)| all.union(&Bounds::around(low, high)))
 }
 

@@ -80,6 +80,11 @@ fn mesh_normal(pose: &Pose, mesh: &TriangleMesh, triangle: u32, uv: Vec2, ng: Ve
     let Some(ns) = (world / world.abs().max_element()).try_normalize() else {
         return ng.as_vec3();
     };
+    above_horizon(ns, ng)
+}
+
+/// Bends a shading normal back to the horizon where it has sunk below; both unit length.
+pub(crate) fn above_horizon(ns: DVec3, ng: DVec3) -> Vec3 {
     let cos = ns.dot(ng);
     if cos >= HORIZON {
         return ns.as_vec3();

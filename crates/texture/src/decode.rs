@@ -25,6 +25,17 @@ impl Default for PictureLimits {
 }
 
 impl PictureLimits {
+    /// Another number of pixels in all. More of them also allow a longer side.
+    #[must_use]
+    pub fn of_pixels(pixels: u64) -> Self {
+        let default = Self::default();
+        let growth = pixels.div_ceil(default.pixels).max(1);
+        Self {
+            side: u32::try_from(growth.saturating_mul(default.side.into())).unwrap_or(u32::MAX),
+            pixels,
+        }
+    }
+
     /// Bytes that no sensible file of a picture within the limits exceeds: four floats a pixel, and as much again.
     #[must_use]
     pub fn file_bytes(&self) -> u64 {

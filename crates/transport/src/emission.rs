@@ -118,7 +118,7 @@ impl<'a> EmissionSampler<'a> {
             }
             Light::Area {
                 sampler,
-                radiance,
+                shine,
                 two_sided,
             } => {
                 let surface = sampler.sample_area(stream.draw_2d(0, dimension::POSITION), time);
@@ -134,7 +134,8 @@ impl<'a> EmissionSampler<'a> {
                     return None;
                 }
                 let origin = spawn_origin(surface.p, surface.error, surface.ng, direction);
-                let flux = *radiance * (cos * sides / (surface.pdf_area * pdf));
+                let radiance = shine.at(sampler, surface.primitive, surface.p, surface.uv, time);
+                let flux = radiance * (cos * sides / (surface.pdf_area * pdf));
                 (Ray::new(origin, direction), flux)
             }
             Light::Distant(disc) => {
@@ -294,7 +295,7 @@ fn flux_to_targets(light: &Light, targets: &[TargetSphere]) -> f64 {
         }
         Light::Area {
             sampler,
-            radiance,
+            shine,
             two_sided,
         } => {
             let key = StageKey::new("flux to targets");
@@ -304,7 +305,7 @@ fn flux_to_targets(light: &Light, targets: &[TargetSphere]) -> f64 {
                 cones(surface.ng) + if *two_sided { cones(-surface.ng) } else { 0.0 }
             };
             let mean = (0..PROBES).map(probe).sum::<f32>() / PROBES as f32;
-            radiance.mean() * sampler.area() as f32 * mean
+            shine.mean.mean() * sampler.area() as f32 * mean
         }
         Light::Distant(disc) => {
             let (_, pdf) = disc.sample(Vec2::splat(0.5), TIME);

@@ -8,6 +8,7 @@
 //!   exactly one does.
 //! - [`LightTable`] chooses lights by what they may send to a point, and samples each by solid angle or area.
 //! - [`PathMedium`] knows what a path travels in: nested and overlapping media, and its wavelength after dispersion.
+//! - [`Material`] is what a surface is made of, and [`SurfaceInputs`] what of it changes from point to point.
 //! - [`arrive`], [`emitted_light`], [`sample_direct_light`] and [`scatter`] are one bounce of a path from the eye.
 //! - [`EmissionSampler`] and [`trace_photon`] are the life of a photon; [`PhotonMap`] estimates radiance from where
 //!   photons landed.
@@ -33,6 +34,7 @@ mod path_class;
 mod photon;
 mod projection;
 mod scene;
+mod textures;
 mod vertex;
 
 pub use camera::Camera;
@@ -46,4 +48,5 @@ pub use path_class::{CausticMethod, DirectMethod, Event, Layer, Methods, PathCla
 pub use photon::{Deposit, MapKind, MapKinds, PHOTON_STAGE, trace_photon};
 pub use projection::{MAX_TARGETS, TargetSphere, cluster_targets};
 pub use scene::{Material, Scene};
+pub use textures::{Coverage, Input, NormalMap, PrincipledInputs, SurfaceInputs, TexturedBsdf, TexturedSurface};
 pub use vertex::Vertex;

@@ -1,21 +1,99 @@
 use crate::light::{LightSource, LightTable};
 use crate::projection::{TargetSphere, cluster_targets};
+use crate::textures::{SurfaceInputs, TexturedSurface};
 use glam::Vec3;
 use radiometry::Rgb;
 use scattering::{Bsdf, Dispersion, Interior};
 use spatial::{RayScene, SurfacePoint};
+use std::sync::Arc;
 
 /// What a surface is made of.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Material {
-    /// How the surface scatters.
+    /// How the surface scatters; where that changes from point to point, how it does where it is clearest.
     pub bsdf: Bsdf,
+    /// What changes from point to point, if anything does.
+    pub textured: Option<Arc<TexturedSurface>>,
     /// Absorption coefficient inside the closed geometry, in m⁻¹; zero where the surface has no inside.
     pub absorption: Rgb,
     /// Of the inside where it overlaps that of other geometry: the highest is there, of equal ones the innermost.
     pub priority: i8,
     /// How the index of refraction of the inside depends on the wavelength.
     pub dispersion: Option<Dispersion>,
+}
+
+impl Material {
+    /// A material by inputs. One that is the same everywhere costs nothing more than one without.
+    ///
+    /// Cost: a look at every texel, to know which lobes it has anywhere.
+    #[must_use]
+    pub fn from_inputs(inputs: SurfaceInputs) -> Self {
+        let is_constant = inputs.is_constant();
+        let textured = TexturedSurface::new(inputs);
+        Self {
+            bsdf: textured.clearest(),
+            textured: (!is_constant).then(|| Arc::new(textured)),
+            ..Self::default()
+        }
+    }
+
+    /// The scattering function and the shading normal at a point of the surface.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, rays: &RayScene, point: &SurfacePoint) -> (Bsdf, Vec3) {
+        match &self.textured {
+            None => (self.bsdf, point.ns),
+            Some(textured) => textured.at(rays, point),
+        }
+    }
+
+    /// How much of the surface is there at a point, in [0, 1].
+    #[inline]
+    #[must_use]
+    pub fn alpha(&self, rays: &RayScene, point: &SurfacePoint) -> f32 {
+        match &self.textured {
+            None => 1.0,
+            Some(textured) => textured.alpha(rays, point),
+        }
+    }
+
+    /// True when the surface may be less than whole anywhere.
+    #[must_use]
+    pub fn has_alpha(&self) -> bool {
+        self.textured.as_ref().is_some_and(|textured| textured.has_alpha())
+    }
+
+    /// True when a lobe counts as D anywhere on the surface.
+    #[must_use]
+    pub fn has_diffuse(&self) -> bool {
+        self.anywhere(Bsdf::has_diffuse)
+    }
+
+    /// True when a lobe counts as S anywhere on the surface.
+    #[must_use]
+    pub fn has_specular(&self) -> bool {
+        self.anywhere(Bsdf::has_specular)
+    }
+
+    /// True when a lobe passes light to the other side anywhere on the surface.
+    #[must_use]
+    pub fn transmits(&self) -> bool {
+        self.anywhere(Bsdf::transmits)
+    }
+
+    /// True when light that passes is in another medium anywhere behind the surface.
+    #[must_use]
+    pub fn has_inside(&self) -> bool {
+        self.anywhere(Bsdf::has_inside)
+    }
+
+    /// Asks all that the surface can be; may say yes where no point of it is so, never no where one is.
+    fn anywhere(&self, is_so: impl Fn(&Bsdf) -> bool) -> bool {
+        match &self.textured {
+            None => is_so(&self.bsdf),
+            Some(textured) => textured.anywhere(is_so),
+        }
+    }
 }
 
 /// Everything that light meets, in rows: geometry, materials and lights. Immutable once built.
@@ -31,6 +109,7 @@ pub struct Scene {
     /// Of each instance.
     passages: Vec<Passage>,
     may_hide_surfaces: bool,
+    has_alpha: bool,
 }
 
 /// What a surface may do to a ray beside stopping it; small, since every hit asks.
@@ -40,20 +119,23 @@ pub(crate) struct Passage {
     pub(crate) has_inside: bool,
     /// Tells wavelengths apart.
     pub(crate) is_dispersive: bool,
+    /// Is less than whole somewhere.
+    pub(crate) has_alpha: bool,
 }
 
 impl Passage {
     fn of(material: &Material) -> Self {
         Self {
-            has_inside: material.bsdf.has_inside(),
+            has_inside: material.has_inside(),
             is_dispersive: material.dispersion.is_some(),
+            has_alpha: material.has_alpha(),
         }
     }
 
     /// True when the surface stops every ray, and nothing else.
     #[inline]
     pub(crate) fn is_plain(self) -> bool {
-        !(self.has_inside || self.is_dispersive)
+        !(self.has_inside || self.is_dispersive || self.has_alpha)
     }
 }
 
@@ -82,7 +164,7 @@ impl Scene {
         let material = |i: u32| &materials[material_of_instance[i as usize] as usize];
         let rows = 0..instances as u32;
         let passages: Vec<Passage> = rows.clone().map(|i| Passage::of(material(i))).collect();
-        let targets = rows.clone().filter(|i| material(*i).bsdf.has_specular()).map(|i| {
+        let targets = rows.clone().filter(|i| material(*i).has_specular()).map(|i| {
             let bounds = rays.instance_bounds(i);
             TargetSphere {
                 centre: bounds.center(),
@@ -91,7 +173,7 @@ impl Scene {
         });
         let targets = cluster_targets(targets.collect());
         let diffuse_area = rows
-            .filter(|i| material(*i).bsdf.has_diffuse())
+            .filter(|i| material(*i).has_diffuse())
             .map(|i| rays.instance_area(i))
             .sum();
         Self {
@@ -102,6 +184,7 @@ impl Scene {
             targets,
             diffuse_area,
             may_hide_surfaces: passages.iter().filter(|passage| passage.has_inside).count() > 1,
+            has_alpha: passages.iter().any(|passage| passage.has_alpha),
             passages,
         }
     }
@@ -125,6 +208,20 @@ impl Scene {
     #[must_use]
     pub fn material_by_row(&self, row: u32) -> &Material {
         &self.materials[row as usize]
+    }
+
+    /// How much of the surface is there at a point that was hit, in [0, 1].
+    #[inline]
+    #[must_use]
+    pub fn alpha(&self, point: &SurfacePoint) -> f32 {
+        self.material(point).alpha(&self.rays, point)
+    }
+
+    /// True when a surface may be less than whole anywhere, so that [`Scene::alpha`] has to be asked.
+    #[inline]
+    #[must_use]
+    pub fn has_alpha(&self) -> bool {
+        self.has_alpha
     }
 
     /// The medium behind the surface that was hit; `None` where it has no inside.

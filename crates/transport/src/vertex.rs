@@ -7,7 +7,7 @@ use spatial::SurfacePoint;
 
 /// A surface point with its scattering function, seen from one direction.
 ///
-/// Rules for shading normals that differ from the geometric one, all in this file:
+/// Textures, vertex colours and normal maps of the material are in it already. Rules for shading normals that differ from the geometric one, all in this file:
 /// - directions that the two normals see on different sides carry nothing;
 /// - where the view itself is such a direction, the geometric normal shades, so that silhouettes do not turn black
 ///   (photons that leave in such a direction are lost all the same: there the two methods differ a little);
@@ -34,13 +34,14 @@ impl<'a> Vertex<'a> {
     #[must_use]
     pub fn new(scene: &Scene, point: &'a SurfacePoint, wo: Vec3, medium: &PathMedium) -> Self {
         let material = scene.material(point);
-        let same_side = (point.ns.dot(wo) > 0.0) == (point.ng.dot(wo) > 0.0);
-        let normal = if same_side { point.ns } else { point.ng };
+        let (bsdf, ns) = material.at(&scene.rays, point);
+        let same_side = (ns.dot(wo) > 0.0) == (point.ng.dot(wo) > 0.0);
+        let normal = if same_side { ns } else { point.ng };
         let frame = Frame::from_normal(normal);
         Self {
             point,
             wo,
-            bsdf: medium.adapt(scene, material, material.bsdf, point, wo),
+            bsdf: medium.adapt(scene, material, bsdf, point, wo),
             wo_local: frame.local_from_world(wo),
             cos_normals: normal.dot(point.ng),
             frame,

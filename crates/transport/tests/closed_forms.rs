@@ -74,6 +74,7 @@ fn frosted_glass_shows_a_caustic_from_behind() {
     let light = LightSource::Area {
         instance: 2,
         radiance: Rgb::splat(10.0),
+        texture: None,
         two_sided: false,
     };
     let scene = scene(&shapes, vec![light]);
@@ -128,6 +129,7 @@ fn a_closed_furnace_shines_alike_everywhere() {
     let light = LightSource::Area {
         instance: 0,
         radiance: Rgb::splat(1.0 - albedo),
+        texture: None,
         two_sided: true,
     };
     let scene = scene(&[room], vec![light]);
@@ -224,9 +226,10 @@ fn photons_in_a_closed_black_box_carry_the_flux_of_the_light() {
         let light = LightSource::Area {
             instance: 1,
             radiance: Rgb::WHITE,
+            texture: None,
             two_sided,
         };
-        let flux = flux_in_black_box(light, &[lamp]);
+        let flux = flux_in_black_box(light, &[lamp.clone()]);
         let expected = std::f32::consts::PI * 0.5 * sides;
         assert!(
             (flux.g - expected).abs() < 2e-3 * expected,
@@ -252,12 +255,13 @@ fn aimed_emission_lands_the_same_flux_as_uniform_emission() {
         vec![LightSource::Area {
             instance: 1,
             radiance: Rgb::WHITE,
+            texture: None,
             two_sided: true,
         }],
         vec![LightSource::Environment(Environment::uniform(Rgb::WHITE))],
     ];
     for lights in sources {
-        let scene = scene(&[ball, lamp], lights);
+        let scene = scene(&[ball.clone(), lamp.clone()], lights);
         let landed = |sampler: &EmissionSampler<'_>| {
             let emitted = 1 << 16;
             let (mut flux, mut count) = (0.0_f64, 0);
@@ -365,6 +369,7 @@ fn photons_and_paths_agree_on_a_caustic() {
     let light = LightSource::Area {
         instance: 0,
         radiance: Rgb::splat(20.0),
+        texture: None,
         two_sided: false,
     };
     let scene = scene(&[lamp, ball, ground], vec![light]);

@@ -236,7 +236,7 @@ fn a_rough_mirror_sees_a_sun_by_both_techniques() {
             LightSource::Environment(Environment::uniform(Rgb::WHITE)),
             distant(30.0),
         ];
-        let both = scene(&[(shape, floor(), mirror)], lights);
+        let both = scene(&[(shape, floor(), mirror.clone())], lights);
         let sun = scene(&[(shape, floor(), mirror)], vec![distant(30.0)]);
         let ray = Ray::new(Vec3::new(0.0, 1.0, 0.0), Vec3::NEG_Y);
         let (both, sun) = (colour(&both, ray, 1 << 14)[1], colour(&sun, ray, 1 << 14)[1]);
@@ -266,6 +266,7 @@ fn many_lights(n: u32) -> (Vec<(Shape, DAffine3, Material)>, Vec<LightSource>) {
         lights.push(LightSource::Area {
             instance: shapes.len() as u32 - 1,
             radiance: strength * 20.0,
+            texture: None,
             two_sided: i % 5 == 0,
         });
     }
@@ -349,6 +350,7 @@ fn light_sampling_and_hits_agree_for_all_kinds_at_once() {
     let light = LightSource::Area {
         instance: 0,
         radiance: Rgb::splat(0.7),
+        texture: None,
         two_sided: true,
     };
     let scene = scene(&[room], vec![light]);

@@ -15,6 +15,7 @@ fn clear(ior: f32, absorption: f32, priority: i8) -> Material {
         absorption: Rgb::splat(absorption),
         priority,
         dispersion: None,
+        ..Material::default()
     }
 }
 
@@ -72,6 +73,7 @@ fn an_interface_between_two_media_reflects_by_the_quotient_of_their_indices() {
         vec![LightSource::Area {
             instance: 2,
             radiance: Rgb::WHITE,
+            texture: None,
             two_sided: true,
         }],
     );
@@ -131,6 +133,7 @@ fn a_hidden_surface_does_not_stand_in_the_light() {
         let light = LightSource::Area {
             instance: 2,
             radiance: Rgb::splat(50.0),
+            texture: None,
             two_sided: false,
         };
         let scene = scene(&shapes, vec![light]);
@@ -151,7 +154,7 @@ fn prism(dispersion: Option<Dispersion>) -> Material {
 fn dispersive_glass_is_white_in_a_white_furnace_and_colours_an_edge() {
     let flint = Dispersion::from_abbe(1.5, 15.0);
     let ball = (Shape::Sphere { radius: 1.0 }, DAffine3::IDENTITY, prism(Some(flint)));
-    let furnace = scene(&[ball], white_sky());
+    let furnace = scene(&[ball.clone()], white_sky());
     let seen = colour(&furnace, Ray::new(Vec3::new(0.8, 0.2, -4.0), Vec3::Z), 1 << 14);
     for channel in seen {
         assert!((channel - 1.0).abs() < 0.01, "{seen:?}");
@@ -168,6 +171,7 @@ fn dispersive_glass_is_white_in_a_white_furnace_and_colours_an_edge() {
         let light = LightSource::Area {
             instance: 1,
             radiance: Rgb::WHITE,
+            texture: None,
             two_sided: true,
         };
         let scene = scene(&[(ball.0, ball.1, glass), screen], vec![light]);
@@ -177,7 +181,7 @@ fn dispersive_glass_is_white_in_a_white_furnace_and_colours_an_edge() {
         let (mut sums, mut places) = ([0.0; 3], [0.0; 3]);
         for i in 0..80 {
             let x = -8.0 + 0.1 * f64::from(i);
-            let seen = behind(x, glass);
+            let seen = behind(x, glass.clone());
             for c in 0..3 {
                 sums[c] += seen[c];
                 places[c] += x * seen[c];

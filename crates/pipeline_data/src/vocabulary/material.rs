@@ -26,6 +26,13 @@ impl Default for Diffuse {
     }
 }
 
+impl Diffuse {
+    /// Name and value of each texture that is there.
+    pub fn textures(&self) -> impl Iterator<Item = (&'static str, &TextureMap)> {
+        self.albedo_texture.iter().map(|map| ("albedo_texture", map))
+    }
+}
+
 /// A metal or a mirror. Two-sided.
 ///
 /// Its colour is one of four: a named `metal`, a complex index of refraction `eta` with `k`, a colour `f0`, or a

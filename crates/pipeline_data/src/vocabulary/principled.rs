@@ -141,3 +141,25 @@ impl Default for Principled {
         }
     }
 }
+
+impl Principled {
+    /// Name and value of each texture that is there.
+    pub fn textures(&self) -> impl Iterator<Item = (&'static str, &TextureMap)> {
+        let all = [
+            ("base_color_texture", &self.base_color_texture),
+            ("metallic_texture", &self.metallic_texture),
+            ("roughness_texture", &self.roughness_texture),
+            ("specular_texture", &self.specular_texture),
+            ("specular_color_texture", &self.specular_color_texture),
+            ("transmission_texture", &self.transmission_texture),
+            ("clearcoat_texture", &self.clearcoat_texture),
+            ("clearcoat_roughness_texture", &self.clearcoat_roughness_texture),
+            ("sheen_texture", &self.sheen_texture),
+            ("sheen_roughness_texture", &self.sheen_roughness_texture),
+            ("emission_texture", &self.emission_texture),
+            ("alpha_texture", &self.alpha_texture),
+            ("normal_texture", &self.normal_texture),
+        ];
+        all.into_iter().filter_map(|(name, map)| Some((name, map.as_ref()?)))
+    }
+}

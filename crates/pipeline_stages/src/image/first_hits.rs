@@ -16,11 +16,12 @@ pub(super) fn record_first_hits(
             first.0.clear();
             first.0.extend(rays.0.iter().zip(&hits.0).map(|(ray, hit)| {
                 hit.as_ref().map_or(FirstHit::default(), |point| {
-                    let wo = Frame::from_normal(point.ns).local_from_world(-ray.direction);
+                    let (bsdf, normal) = scene.0.material(point).at(&scene.0.rays, point);
+                    let wo = Frame::from_normal(normal).local_from_world(-ray.direction);
                     FirstHit {
                         alpha: 1.0,
-                        albedo: scene.0.material(point).bsdf.albedo(wo),
-                        normal: point.ns,
+                        albedo: bsdf.albedo(wo),
+                        normal,
                         depth: point.p.distance(ray.origin),
                     }
                 })

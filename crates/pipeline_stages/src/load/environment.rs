@@ -20,7 +20,7 @@ pub(super) fn import_environments(
 ) {
     let mut findings = Findings::default();
     let mut maps = EnvironmentMaps::default();
-    let limits = PictureLimits::default();
+    let limits = PictureLimits::of_pixels(request.options.limits.texture_pixels as u64);
     let mut rows: Vec<_> = lights.iter().collect();
     rows.sort_by_key(|(index, _)| **index);
     for (index, light) in rows {

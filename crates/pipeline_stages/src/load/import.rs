@@ -28,6 +28,8 @@ struct WantedPart {
     place: Option<Place>,
     /// Whether a prim shades them by their normals.
     normals: bool,
+    /// Whether a prim multiplies its material by their colours.
+    colours: bool,
 }
 
 /// A file that was read.
@@ -119,10 +121,12 @@ fn list_files(scene: &Scene, meshes: Query<(&PrimIndex, &Mesh)>, findings: &mut 
                 key,
                 place,
                 normals: false,
+                colours: false,
             });
             parts.len() - 1
         });
         parts[part].normals |= mesh.smooth;
+        parts[part].colours |= mesh.colors;
     }
     wanted
 }
@@ -161,6 +165,8 @@ fn place(part: &WantedPart, data: MeshData) -> ImportedMesh {
         positions: data.positions,
         normals: data.normals.filter(|_| part.normals),
         uvs: data.uvs,
+        more_uvs: data.more_uvs,
+        colours: data.colours.filter(|_| part.colours),
         triangles: data.triangles,
     };
     ImportedMesh::new(part.key.clone(), data.origin, mesh)

@@ -1,5 +1,5 @@
 use super::frame::{moving_frame, rotation_of};
-use super::materials::MaterialTable;
+use super::materials::{Glow, MaterialTable};
 use bevy_ecs::prelude::*;
 use glam::{DAffine3, Vec3};
 use pipeline_core::Counters;
@@ -14,7 +14,8 @@ use radiometry::{Rgb, math};
 use scene_format::{Diagnostic, Place, Scene};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use transport::{Environment, LightSource, MovingFrame, SpotCone};
+use std::sync::Arc;
+use transport::{Environment, Input, LightSource, MovingFrame, SpotCone};
 
 /// All lights that shine, in the order of the scene. On its way to `join_tables`.
 #[derive(Resource, Default)]
@@ -105,8 +106,8 @@ pub(super) fn list_lights(
         }
     }
     for (instance, glow) in (0..).zip(&materials.glow_of_instance) {
-        if let Some((radiance, material)) = glow {
-            collector.add_glow(instance, *radiance, *material);
+        if let Some(glow) = glow {
+            collector.add_glow(instance, glow);
         }
     }
     // After an error, what seems to be missing may be what was wrong.
@@ -167,27 +168,31 @@ impl Collector<'_> {
         let source = LightSource::Area {
             instance,
             radiance,
+            texture: None,
             two_sided: emission.two_sided,
         };
         self.add(prim, "Emission", radiance, source);
     }
 
     /// A surface that shines because its material does.
-    ///
-    /// - `material`: the prim with the material.
-    fn add_glow(&mut self, instance: u32, radiance: Rgb, material: u32) {
+    fn add_glow(&mut self, instance: u32, glow: &Glow) {
         let Some(rays) = &self.acceleration.0 else { return };
         let area = rays.instance_area(instance);
         if area.is_nan() || area <= 0.0 {
-            self.dark.get_or_insert((material, "Principled"));
+            self.dark.get_or_insert((glow.material, "Principled"));
             return;
         }
+        let radiance = glow.radiance.mean();
         let source = LightSource::Area {
             instance,
             radiance,
+            texture: match &glow.radiance {
+                Input::Texture(texture) => Some(Arc::new((**texture).clone())),
+                Input::Constant(_) => None,
+            },
             two_sided: false,
         };
-        self.add(material, "Principled", radiance, source);
+        self.add(glow.material, "Principled", radiance, source);
     }
 
     /// The frame of a light; one that is too far off is reported.

@@ -1,17 +1,16 @@
-use super::surface::{
-    conductor_material, dielectric_material, diffuse_material, plastic_material, principled_material,
-};
+use super::inputs::{Fields, highest_uv_set};
+use super::surface::{conductor_material, dielectric_material, plastic_material, principled_interior};
 use bevy_ecs::prelude::*;
 use pipeline_core::{Counters, record_items};
 use pipeline_data::vocabulary::{
     Conductor, Dielectric, Diffuse, Emission, Findings, GeometryComponents, GeometryComponentsItem, GeometrySource,
     LightTransport, MaterialBinding, Plastic, Principled, SceneReport, component_place, field_place,
 };
-use pipeline_data::{InstancePrims, MeshStore, PrimIndex, RenderSettings};
+use pipeline_data::{InstancePrims, MeshStore, PrimIndex, RenderSettings, TextureStore};
 use radiometry::Rgb;
 use scene_format::{Diagnostic, Scene};
 use std::collections::BTreeMap;
-use transport::Material;
+use transport::{Input, Material, SurfaceInputs, TexturedBsdf};
 
 /// Names of the material components, for messages.
 const MATERIALS: &str = "Diffuse, Conductor, Dielectric, Plastic, Principled";
@@ -21,8 +20,17 @@ const MATERIALS: &str = "Diffuse, Conductor, Dielectric, Plastic, Principled";
 pub(super) struct MaterialTable {
     pub(super) materials: Vec<Material>,
     pub(super) of_instance: Vec<u32>,
-    /// Radiance that the material of each instance emits by itself, and the prim with the material.
-    pub(super) glow_of_instance: Vec<Option<(Rgb, u32)>>,
+    /// What the material of each instance emits by itself.
+    pub(super) glow_of_instance: Vec<Option<Glow>>,
+}
+
+/// Light of a material.
+#[derive(Clone)]
+pub(super) struct Glow {
+    /// W·m⁻²·sr⁻¹.
+    pub(super) radiance: Input<Rgb>,
+    /// The prim with the material.
+    pub(super) material: u32,
 }
 
 type MaterialPrim<'a> = (
@@ -42,24 +50,31 @@ type HasMaterial = Or<(
 )>;
 
 /// A material component as a row.
-#[derive(Clone, Copy)]
 struct Row {
     row: u32,
     prim: u32,
     component: &'static str,
     needs_inside: bool,
-    glow: Rgb,
+    glow: Option<Glow>,
+    /// What the colours of vertices can multiply.
+    inputs: Option<SurfaceInputs>,
+    /// The row with such colours, once there is one.
+    coloured: Option<u32>,
+    /// The texture that needs the most sets of texture coordinates, and their number before its own.
+    uv_set: Option<(&'static str, u32)>,
 }
 
 /// Rows by prim, and who uses which.
 struct Rows<'a> {
     scene: &'a Scene,
+    textures: &'a TextureStore,
     table: MaterialTable,
     of_prim: BTreeMap<u32, Row>,
     /// Prim with the material that a prim is bound to; `None` after an error.
     bindings: BTreeMap<u32, Option<u32>>,
     black: Option<u32>,
     default: Option<u32>,
+    default_coloured: Option<u32>,
 }
 
 /// Turns material components into rows and finds the row of every instance.
@@ -68,6 +83,7 @@ pub(super) fn build_material_table(
     mut check: SceneReport,
     settings: Option<Res<RenderSettings>>,
     store: Res<MeshStore>,
+    textures: Res<TextureStore>,
     instances: Res<InstancePrims>,
     mut counters: ResMut<Counters>,
     mut table: ResMut<MaterialTable>,
@@ -79,11 +95,13 @@ pub(super) fn build_material_table(
     let specular_alpha = settings.map_or(LightTransport::default().specular_alpha, |s| s.methods.specular_alpha);
     let mut rows = Rows {
         scene: check.scene(),
+        textures: &textures,
         table: MaterialTable::default(),
         of_prim: BTreeMap::new(),
         bindings: BTreeMap::new(),
         black: None,
         default: None,
+        default_coloured: None,
     };
     rows.add_materials(&materials, specular_alpha, &mut findings);
     rows.add_bindings(&bindings, &mut findings);
@@ -95,15 +113,13 @@ pub(super) fn build_material_table(
         let Some((parts, emits)) = geometry.get(prim) else {
             continue;
         };
-        let row = rows.row_for(*prim, *emits);
+        let row = rows.row_for(*prim, *emits, has_colours(parts, &store));
         rows.table.of_instance.push(row);
-        let glow = rows
-            .component_for(*prim)
-            .filter(|found| !emits && !found.glow.is_black());
-        rows.table
-            .glow_of_instance
-            .push(glow.map(|found| (found.glow, found.prim)));
+        let glow = rows.component_for(*prim).filter(|_| !emits);
+        let glow = glow.and_then(|found| found.glow.clone());
+        rows.table.glow_of_instance.push(glow);
         rows.check_inside(*prim, parts, &store, &mut findings);
+        rows.check_coordinates(*prim, parts, &store, &mut findings);
     }
     record_items(rows.table.of_instance.len());
     counters
@@ -153,8 +169,17 @@ impl Rows<'_> {
                 }
                 findings.push_at(component_place(self.scene, prim, second), finding);
             }
+            let fields = Fields {
+                scene: self.scene,
+                store: self.textures,
+                prim,
+                component: names.first().copied().unwrap_or_default(),
+            };
+            let mut row = Row::new(&fields);
             let material = if let Some(diffuse) = diffuse {
-                diffuse_material(diffuse)
+                row.uv_set = highest_uv_set(&mut diffuse.textures());
+                let inputs = row.inputs.insert(fields.diffuse(diffuse, findings));
+                Material::from_inputs(inputs.clone())
             } else if let Some(conductor) = conductor {
                 conductor_material(conductor, specular_alpha, self.scene, prim, findings)
             } else if let Some(dielectric) = dielectric {
@@ -162,21 +187,18 @@ impl Rows<'_> {
             } else if let Some(plastic) = plastic {
                 plastic_material(plastic, specular_alpha)
             } else if let Some(principled) = principled {
-                principled_material(principled, specular_alpha, self.scene, prim, findings)
+                row.uv_set = highest_uv_set(&mut principled.textures());
+                row.glow = Glow::of(fields.emission(principled, findings), prim);
+                let inputs = row
+                    .inputs
+                    .insert(fields.principled(principled, specular_alpha, findings));
+                principled_interior(principled, Material::from_inputs(inputs.clone()))
             } else {
                 continue;
             };
-            let row = self.add(material);
-            self.of_prim.insert(
-                prim,
-                Row {
-                    row,
-                    prim,
-                    component: names.first().copied().unwrap_or_default(),
-                    needs_inside: material.bsdf.has_inside(),
-                    glow: principled.map_or(Rgb::BLACK, |principled| principled.emission.into()),
-                },
-            );
+            row.needs_inside = material.has_inside();
+            row.row = self.add(material);
+            self.of_prim.insert(prim, row);
         }
     }
 
@@ -209,37 +231,118 @@ impl Rows<'_> {
     }
 
     /// The material component that a geometry prim uses.
-    fn component_for(&self, prim: u32) -> Option<Row> {
-        if let Some(own) = self.of_prim.get(&prim) {
-            return Some(*own);
+    fn component_for(&self, prim: u32) -> Option<&Row> {
+        self.of_prim.get(&self.material_of(prim)?)
+    }
+
+    /// The prim whose material a geometry prim uses.
+    fn material_of(&self, prim: u32) -> Option<u32> {
+        if self.of_prim.contains_key(&prim) {
+            return Some(prim);
         }
         let mut at = Some(prim as usize);
         while let Some(prim) = at {
             if let Some(bound) = self.bindings.get(&(prim as u32)) {
-                return bound.and_then(|target| self.of_prim.get(&target).copied());
+                return *bound;
             }
             at = self.scene.prims[prim].parent;
         }
         None
     }
 
-    fn row_for(&mut self, prim: u32, emits: bool) -> u32 {
-        if let Some(found) = self.component_for(prim) {
-            return found.row;
+    /// - `coloured`: whether the geometry has colours of its own.
+    fn row_for(&mut self, prim: u32, emits: bool, coloured: bool) -> u32 {
+        if let Some(material) = self.material_of(prim) {
+            return self.row_of(material, coloured);
         }
-        let known = if emits { self.black } else { self.default };
+        let known = match (emits, coloured) {
+            (true, _) => self.black,
+            (false, true) => self.default_coloured,
+            (false, false) => self.default,
+        };
         if let Some(row) = known {
             return row;
         }
-        if emits {
-            let row = self.add(Material::default());
-            self.black = Some(row);
-            row
+        let material = if emits {
+            Material::default()
         } else {
-            let row = self.add(diffuse_material(&Diffuse::default()));
-            self.default = Some(row);
-            row
+            Material::from_inputs(SurfaceInputs {
+                bsdf: TexturedBsdf::Diffuse(Input::Constant(Diffuse::default().albedo.into())),
+                normal: None,
+                coverage: None,
+                vertex_colours: coloured,
+            })
+        };
+        let row = self.add(material);
+        match (emits, coloured) {
+            (true, _) => self.black = Some(row),
+            (false, true) => self.default_coloured = Some(row),
+            (false, false) => self.default = Some(row),
         }
+        row
+    }
+
+    /// The row of the material of a prim, with or without the colours of vertices.
+    fn row_of(&mut self, material: u32, coloured: bool) -> u32 {
+        let found = &self.of_prim[&material];
+        let (plain, known) = (found.row, found.coloured);
+        let Some(inputs) = found.inputs.as_ref().filter(|_| coloured) else {
+            return plain;
+        };
+        if let Some(known) = known {
+            return known;
+        }
+        let inputs = SurfaceInputs {
+            vertex_colours: true,
+            ..inputs.clone()
+        };
+        let before = &self.table.materials[plain as usize];
+        let material_row = Material {
+            absorption: before.absorption,
+            priority: before.priority,
+            ..Material::from_inputs(inputs)
+        };
+        let row = self.add(material_row);
+        if let Some(found) = self.of_prim.get_mut(&material) {
+            found.coloured = Some(row);
+        }
+        row
+    }
+
+    /// A texture on a mesh needs the texture coordinates that it names.
+    fn check_coordinates(
+        &self,
+        prim: u32,
+        parts: &GeometryComponentsItem<'_, '_>,
+        store: &MeshStore,
+        findings: &mut Findings,
+    ) {
+        let Some((material, (field, set))) = self.component_for(prim).and_then(|found| Some((found, found.uv_set?)))
+        else {
+            return;
+        };
+        let has_set = match parts.sources().next() {
+            Some((_, GeometrySource::Mesh(mesh))) => store.get(mesh).is_none_or(|m| m.mesh.uv_set(set).is_some()),
+            Some((_, GeometrySource::Shape(_))) => set == 0,
+            None => true,
+        };
+        if has_set {
+            return;
+        }
+        let which = match set {
+            0 => "texture coordinates".to_owned(),
+            set => format!("set {set} of texture coordinates"),
+        };
+        let message = format!(
+            "`{}` has no {which}, which `{field}` of its material needs",
+            self.path(prim)
+        );
+        let place = field_place(self.scene, material.prim, material.component, &[field]);
+        let finding = Diagnostic::warning("no-coordinates", message).note(match set {
+            0 => "the picture is repeated on every triangle instead",
+            _ => "the first set is used instead",
+        });
+        findings.push_at(place, finding);
     }
 
     /// Glass has an inside, so its surface must be closed.
@@ -274,5 +377,38 @@ impl Rows<'_> {
             finding = finding.also(place, "the material".to_owned());
         }
         findings.push_at(component_place(self.scene, prim, name), finding);
+    }
+}
+
+/// Whether the vertices of a mesh have colours that are wanted.
+fn has_colours(parts: &GeometryComponentsItem<'_, '_>, store: &MeshStore) -> bool {
+    match parts.sources().next() {
+        Some((_, GeometrySource::Mesh(mesh))) => {
+            mesh.colors && store.get(mesh).is_some_and(|found| found.mesh.colours.is_some())
+        }
+        _ => false,
+    }
+}
+
+impl Glow {
+    /// None for a material that is dark everywhere.
+    fn of(radiance: Input<Rgb>, material: u32) -> Option<Self> {
+        (!radiance.max().is_black()).then_some(Self { radiance, material })
+    }
+}
+
+impl Row {
+    /// A row to be filled in.
+    fn new(fields: &Fields<'_>) -> Self {
+        Self {
+            row: 0,
+            prim: fields.prim,
+            component: fields.component,
+            needs_inside: false,
+            glow: None,
+            inputs: None,
+            coloured: None,
+            uv_set: None,
+        }
     }
 }

@@ -17,6 +17,7 @@
 //! Limits: no textures, one uniform environment. After this set nothing but writing fails: whatever could is refused here.
 
 mod frame;
+mod inputs;
 mod join;
 mod lights;
 mod materials;

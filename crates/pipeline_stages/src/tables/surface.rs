@@ -1,21 +1,10 @@
 //! From a material component to the row that light transport reads.
 
-use pipeline_data::vocabulary::{Conductor, Dielectric, Diffuse, Findings, Plastic, Principled, field_place};
+use pipeline_data::vocabulary::{Conductor, Dielectric, Findings, Plastic, Principled, field_place};
 use radiometry::{Rgb, math};
-use scattering::{
-    Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, DiffuseBsdf, Dispersion, Metal, Microsurface, PlasticBsdf,
-    PrincipledBsdf, PrincipledParameters,
-};
+use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, Dispersion, Metal, Microsurface, PlasticBsdf};
 use scene_format::{Diagnostic, Scene};
 use transport::Material;
-
-/// A matt surface.
-pub(super) fn diffuse_material(diffuse: &Diffuse) -> Material {
-    Material {
-        bsdf: Bsdf::Diffuse(DiffuseBsdf::new(diffuse.albedo.into())),
-        ..Material::default()
-    }
-}
 
 /// A metal. An unknown one is reported, and black.
 pub(super) fn conductor_material(
@@ -77,6 +66,7 @@ pub(super) fn dielectric_material(
             dispersion: dielectric
                 .dispersion
                 .map(|abbe| Dispersion::from_abbe(dielectric.ior, abbe)),
+            ..Material::default()
         };
     }
     if dielectric.roughness > 0.0 {
@@ -109,43 +99,16 @@ pub(super) fn plastic_material(plastic: &Plastic, specular_alpha: f32) -> Materi
     }
 }
 
-/// The layered material of glTF, but its emission. What cannot be served is reported.
-pub(super) fn principled_material(
-    principled: &Principled,
-    specular_alpha: f32,
-    scene: &Scene,
-    prim: u32,
-    findings: &mut Findings,
-) -> Material {
-    if principled.alpha < 1.0 {
-        let finding = Diagnostic::error("not-supported-yet", "`Principled.alpha` below 1 is not supported yet")
-            .note("`transmission` makes a surface clear");
-        findings.push_at(field_place(scene, prim, "Principled", &["alpha"]), finding);
-    }
-    let parameters = PrincipledParameters {
-        base_color: principled.base_color.into(),
-        metallic: principled.metallic,
-        roughness: principled.roughness,
-        ior: principled.ior,
-        specular: principled.specular,
-        specular_color: principled.specular_color.into(),
-        transmission: principled.transmission,
-        solid: principled.thickness > 0.0,
-        clearcoat: principled.clearcoat,
-        clearcoat_roughness: principled.clearcoat_roughness,
-        sheen: principled.sheen.into(),
-        sheen_roughness: principled.sheen_roughness,
-    };
-    let bsdf = Bsdf::Principled(PrincipledBsdf::new(&parameters, specular_alpha));
+/// What a `Principled` has beside its inputs.
+pub(super) fn principled_interior(principled: &Principled, material: Material) -> Material {
     let absorption = match principled.attenuation_distance {
-        Some(distance) if bsdf.has_inside() => absorption_of(principled.attenuation_color.into(), distance),
+        Some(distance) if material.has_inside() => absorption_of(principled.attenuation_color.into(), distance),
         _ => Rgb::BLACK,
     };
     Material {
-        bsdf,
         absorption,
         priority: principled.priority,
-        dispersion: None,
+        ..material
     }
 }
 

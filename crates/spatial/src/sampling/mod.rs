@@ -345,6 +345,23 @@ impl SurfaceSampler {
         (opening.area_vector.length() / (now().area_vector.length() * self.area)) as f32
     }
 
+    /// Texture coordinates of a point of this surface in one of the sets of its mesh.
+    ///
+    /// - `primitive`, `p`, `uv`: of a [`SurfaceSample`] or a [`SurfacePoint`].
+    /// - `set`: from 0; one that is not there, and every one of a shape, is the first.
+    #[must_use]
+    pub fn uv_set(&self, primitive: u32, p: Vec3, uv: Vec2, time: f32, set: u32) -> Vec2 {
+        match &self.surface {
+            Surface::Triangles(triangles) if set > 0 => {
+                let shape = triangles.world(&self.instance.at(time), primitive);
+                triangles
+                    .uv_set(primitive, shape.weights(p.as_dvec3()), set)
+                    .unwrap_or(uv)
+            }
+            _ => uv,
+        }
+    }
+
     fn solid_sample(&self, pose: &Pose, solid: &Solid, table: &Table, face: u32, near: DVec3) -> SurfaceSample {
         let local = solid.project(near, face);
         let (p, error) = pose.world_point(local.p);

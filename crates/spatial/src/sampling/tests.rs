@@ -13,8 +13,8 @@ fn quad_of_two_triangles() -> Geometry {
             .map(|(x, y)| Vec3::new(x, y, 0.0))
             .into(),
         uvs: Some([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(Vec2::from).into()),
-        normals: None,
         triangles: vec![[1, 2, 0], [2, 3, 0]],
+        ..TriangleMesh::default()
     }))
 }
 

@@ -2,6 +2,7 @@
 
 use super::rectangle::Rectangle;
 use crate::TriangleMesh;
+use crate::attributes::blend;
 use crate::placed::Pose;
 use crate::surface::{WorldTriangle, mesh_uv};
 use glam::{DVec2, DVec3, Vec2};
@@ -60,6 +61,13 @@ impl Triangles {
 
     pub(super) fn uv(&self, triangle: u32, uv: Vec2) -> Vec2 {
         mesh_uv(&self.mesh, triangle, uv)
+    }
+
+    /// Texture coordinates in one of the sets of the mesh, if it is there.
+    ///
+    /// - `weights`: of the second and third vertex.
+    pub(super) fn uv_set(&self, triangle: u32, weights: Vec2, set: u32) -> Option<Vec2> {
+        Some(blend(&self.mesh, self.mesh.uv_set(set)?, triangle, weights))
     }
 
     /// Chooses a triangle and the weights of its second and third vertex.

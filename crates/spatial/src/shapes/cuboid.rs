@@ -75,3 +75,9 @@ pub(super) fn parameters(half: DVec3, face: u32, p: DVec3) -> DVec2 {
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     (DVec2::new(p[i] / half[i], p[j] / half[j]) + 1.0) * 0.5
 }
+
+pub(super) fn tangents(half: DVec3, face: u32) -> (DVec3, DVec3) {
+    let (axis, _) = axis_and_sign(face);
+    let along = |axis: usize| DVec3::AXES[axis] * (2.0 * half[axis]);
+    (along((axis + 1) % 3), along((axis + 2) % 3))
+}

@@ -217,6 +217,28 @@ impl Solid {
         u.clamp(DVec2::ZERO, DVec2::ONE)
     }
 
+    /// How a point of a face moves as its texture coordinates grow: dp/du and dp/dv. `None` on the axis of a round shape.
+    pub(crate) fn tangents(&self, face: u32, p: DVec3) -> Option<(DVec3, DVec3)> {
+        let around = || {
+            let along = DVec3::new(p.z, 0.0, -p.x);
+            let radius = along.length();
+            (radius > 0.0).then(|| (along * std::f64::consts::TAU, along / radius))
+        };
+        // On round faces, v runs along the outward normal turned a quarter about the way around.
+        let upward = |n: DVec3, length: f64| {
+            let (dpdu, around) = around()?;
+            Some((dpdu, n.cross(around) * length))
+        };
+        match self {
+            Self::Sphere { radius } => upward(p.normalize_or_zero(), std::f64::consts::PI * radius),
+            Self::Quad { half } => Some((DVec3::X * (2.0 * half.x), DVec3::Y * (2.0 * half.y))),
+            Self::Disc { radius } => Some((DVec3::X * (2.0 * radius), DVec3::Y * (2.0 * radius))),
+            Self::Cuboid { half } => Some(cuboid::tangents(*half, face)),
+            Self::Revolution(profile) => upward(self.project(p, face).n, profile.length(face)),
+            Self::Torus(torus) => upward(self.project(p, face).n, std::f64::consts::TAU * torus.minor),
+        }
+    }
+
     /// Corners of the tightest box around the shape under an affine transform.
     pub(crate) fn bounds(&self, m: &DAffine3) -> (DVec3, DVec3) {
         let axes = m.matrix3;

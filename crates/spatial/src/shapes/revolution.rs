@@ -123,6 +123,11 @@ impl Profile {
         }
     }
 
+    /// From one edge of a face to the other.
+    pub(super) fn length(&self, face: u32) -> f64 {
+        self.segment(face).length
+    }
+
     /// Straight up and down, all normals of a face are one.
     pub(super) fn spread(&self, face: u32) -> Spread {
         if self.segment(face).normal.x == 0.0 {

@@ -9,6 +9,8 @@ use glam::{Vec2, Vec3};
 use radiometry::{Distribution, Frame, Rgb, math, warp};
 use spatial::{Ray, RayScene, SurfacePoint, SurfaceSampler};
 use std::f64::consts::PI;
+use std::sync::Arc;
+use texture::Texture;
 use tree::{Facing, LightBounds, LightTree};
 
 pub use environment::{Environment, EnvironmentMap};
@@ -38,6 +40,8 @@ pub enum LightSource {
         instance: u32,
         /// W·m⁻²·sr⁻¹.
         radiance: Rgb,
+        /// Radiance from point to point, in place of `radiance`, which is then its mean, for the choice of lights.
+        texture: Option<Arc<Texture>>,
         /// Shines on both sides; otherwise on that of the geometric normal.
         two_sided: bool,
     },
@@ -121,6 +125,26 @@ impl LightSample {
     }
 }
 
+/// Radiance of a surface.
+pub(crate) struct SurfaceRadiance {
+    /// W·m⁻²·sr⁻¹; of a texture the mean.
+    pub(crate) mean: Rgb,
+    texture: Option<Arc<Texture>>,
+}
+
+impl SurfaceRadiance {
+    /// Radiance of a point of the surface that `sampler` samples, W·m⁻²·sr⁻¹.
+    ///
+    /// - `primitive`, `p`, `uv`: of the point.
+    #[inline]
+    pub(crate) fn at(&self, sampler: &SurfaceSampler, primitive: u32, p: Vec3, uv: Vec2, time: f32) -> Rgb {
+        match &self.texture {
+            None => self.mean,
+            Some(texture) => texture.rgb(sampler.uv_set(primitive, p, uv, time, texture.uv_set)),
+        }
+    }
+}
+
 pub(crate) enum Light {
     Point {
         frame: MovingFrame,
@@ -133,7 +157,7 @@ pub(crate) enum Light {
     },
     Area {
         sampler: Box<SurfaceSampler>,
-        radiance: Rgb,
+        shine: SurfaceRadiance,
         two_sided: bool,
     },
     Distant(DistantDisc),
@@ -332,8 +356,12 @@ impl LightTable {
     pub fn emitted(&self, point: &SurfacePoint, wo: Vec3) -> Rgb {
         match self.light_of(point) {
             Some(Light::Area {
-                radiance, two_sided, ..
-            }) if *two_sided || point.ng.dot(wo) > 0.0 => *radiance,
+                sampler,
+                shine,
+                two_sided,
+            }) if *two_sided || point.ng.dot(wo) > 0.0 => {
+                shine.at(sampler, point.primitive, point.p, point.uv, point.time)
+            }
             _ => Rgb::BLACK,
         }
     }
@@ -416,10 +444,14 @@ fn prepare(rays: &RayScene, source: LightSource) -> Option<Light> {
         LightSource::Area {
             instance,
             radiance,
+            texture,
             two_sided,
         } => Light::Area {
             sampler: Box::new(SurfaceSampler::new(rays, instance)?),
-            radiance,
+            shine: SurfaceRadiance {
+                mean: radiance,
+                texture,
+            },
             two_sided,
         },
         LightSource::Distant {
@@ -456,9 +488,9 @@ impl Light {
     /// What `area` m² of a surface emit, W.
     fn power_of_area(&self, area: f64) -> f64 {
         match self {
-            Self::Area {
-                radiance, two_sided, ..
-            } => PI * area * if *two_sided { 2.0 } else { 1.0 } * f64::from(radiance.mean()),
+            Self::Area { shine, two_sided, .. } => {
+                PI * area * if *two_sided { 2.0 } else { 1.0 } * f64::from(shine.mean.mean())
+            }
             _ => 0.0,
         }
     }
@@ -545,15 +577,16 @@ impl Light {
             }
             Self::Area {
                 sampler,
-                radiance,
+                shine,
                 two_sided,
             } => {
                 let sampled = sampler.sample_toward(from, piece, u, time)?;
+                let on = &sampled.sample;
                 let shines = *two_sided || sampled.sample.ng.dot(sampled.wi) < 0.0;
                 let finite = sampled.pdf > 0.0 && sampled.pdf.is_finite();
                 (shines && finite).then_some(LightSample {
                     wi: sampled.wi,
-                    radiance: *radiance,
+                    radiance: shine.at(sampler, on.primitive, on.p, on.uv, time),
                     pdf: probability * sampled.pdf,
                     delta: false,
                     target: Target::Point {

@@ -55,7 +55,7 @@ pub(crate) fn scene(shapes: &[(Shape, DAffine3, Material)], lights: Vec<LightSou
         .map(|(i, (_, placed, _))| Instance::fixed(i as u32, *placed))
         .collect();
     let rays = RayScene::build(geometries, instances).expect("valid scene");
-    let materials = shapes.iter().map(|(.., material)| *material).collect();
+    let materials = shapes.iter().map(|(.., material)| material.clone()).collect();
     Scene::new(rays, materials, (0..shapes.len() as u32).collect(), lights)
 }
 

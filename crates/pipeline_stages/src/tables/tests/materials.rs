@@ -136,10 +136,6 @@ fn materials_that_cannot_be_are_refused_with_their_place() {
             "error[two-materials]: `/A`",
         ),
         (
-            "\"/A\": Def(Sphere: (), Principled: (alpha: 0.5)),\n",
-            "error[not-supported-yet]: `Principled.alpha`",
-        ),
-        (
             "\"/A\": Def(Quad: (), Principled: (transmission: 1, thickness: 0.1)),\n",
             "write `Principled: (thickness: 0)`",
         ),
