@@ -175,3 +175,48 @@ fn textures_are_explained_and_flattened() {
         schema.stdout
     );
 }
+
+#[test]
+fn a_surface_that_is_not_whole_lets_the_rest_through() {
+    let black = "Principled: (base_color: (0, 0, 0), specular: 0, alpha: 0.4)";
+    let image = beauty(&before_quad(black, SKY));
+    assert!((mean(&image, |_, _| true) - 0.6).abs() < NOISE);
+    // Below a cut-off there is nothing, above it all.
+    for (cutoff, expected) in [(0.5, 1.0), (0.3, 0.0)] {
+        let cut = black.replace("alpha: 0.4", &format!("alpha: 0.4, alpha_cutoff: {cutoff}"));
+        let image = beauty(&before_quad(&cut, SKY));
+        assert_eq!(mean(&image, |_, _| true), expected);
+    }
+    // A hole for each bright square.
+    let holes = black.replace(
+        "alpha: 0.4",
+        r#"alpha_texture: (file: "checker.exr", filter: Nearest), alpha_cutoff: 0.5"#,
+    );
+    let image = beauty(&before_quad(&holes, SKY));
+    assert!((mean(&image, |_, _| true) - 0.5).abs() < 1e-6);
+}
+
+#[test]
+fn a_screen_that_is_not_whole_dims_lamps_of_every_kind_alike() {
+    let screen = |alpha: f32| {
+        format!(
+            r#""/Screen": Def(Quad: (size: (40, 40)), Transform: (translate: (0, 0, 2)),
+                Principled: (base_color: (0, 0, 0), specular: 0, alpha: {alpha})),"#
+        )
+    };
+    for lamp in [
+        r#""/Lamp": Def(PointLight: (power: (100, 100, 100)), Transform: (translate: (0, 0, 3))),"#,
+        r#""/Lamp": Def(DistantLight: (irradiance: (3, 3, 3), angle: 3)),"#,
+        r#""/Lamp": Def(Quad: (size: (30, 30)), Emission: (radiance: (1, 1, 1)), Transform: (translate: (0, 0, 4), rotate: (180, 0, 0))),"#,
+    ] {
+        let wall = "Diffuse: (albedo: (0.5, 0.5, 0.5))";
+        let lit = |alpha: f32| {
+            mean(
+                &beauty(&before_quad(wall, &format!("{lamp}{}", screen(alpha)))),
+                |_, _| true,
+            )
+        };
+        let (whole, dimmed) = (lit(0.0), lit(0.75));
+        assert!((dimmed / whole - 0.25).abs() < 0.01, "{lamp}: {dimmed} of {whole}");
+    }
+}

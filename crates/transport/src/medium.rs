@@ -127,13 +127,21 @@ fn transmittance(absorption: Rgb, distance: f32) -> Rgb {
 
 /// Follows a ray to the first surface that is there for it.
 ///
-/// Surfaces that are hidden in a medium of higher priority are passed, and the medium is told.
+/// Surfaces that are hidden in a medium of higher priority are passed, and the medium is told. A surface that is not
+/// whole is passed as often as it is not there.
 ///
+/// - `u`: gives a number in [0, 1) for each surface that is not whole, counted from 0.
 /// - returns the surface, or `None` where the ray leaves the scene, and the share of light that is not absorbed on the way.
 #[inline]
-pub(crate) fn follow(scene: &Scene, medium: &mut PathMedium, ray: &Ray) -> (Option<SurfacePoint>, Rgb) {
+pub(crate) fn follow(
+    scene: &Scene,
+    medium: &mut PathMedium,
+    ray: &Ray,
+    u: impl Fn(u32) -> f32,
+) -> (Option<SurfacePoint>, Rgb) {
     let mut segment = *ray;
     let mut left = Rgb::WHITE;
+    let mut cutouts = 0;
     loop {
         let Some(hit) = scene.rays.intersect(&segment) else {
             left *= medium.transmittance(scene, &segment, None, f32::INFINITY);
@@ -144,6 +152,14 @@ pub(crate) fn follow(scene: &Scene, medium: &mut PathMedium, ray: &Ray) -> (Opti
             return (Some(point), left);
         }
         left *= medium.transmittance(scene, &segment, Some(&point), hit.t);
+        if scene.passage(&point).has_alpha {
+            let alpha = scene.alpha(&point);
+            cutouts += 1;
+            if alpha < 1.0 && u(cutouts - 1) >= alpha {
+                segment.origin = spawn_origin(point.p, point.error, point.ng, segment.direction);
+                continue;
+            }
+        }
         if !medium.hides(scene, &point, segment.direction) {
             return (Some(point), left);
         }
@@ -152,7 +168,8 @@ pub(crate) fn follow(scene: &Scene, medium: &mut PathMedium, ray: &Ray) -> (Opti
     }
 }
 
-/// The share of light that goes along a ray up to its end; `None` where something is in the way.
+/// The share of light that goes along a ray up to its end; `None` where something is in the way. Surfaces that are not
+/// whole let through what they do on average.
 ///
 /// - `medium`: where the ray starts.
 #[inline]
@@ -160,7 +177,7 @@ pub(crate) fn unblocked(scene: &Scene, mut medium: PathMedium, ray: &Ray) -> Opt
     if !scene.rays.occluded(ray) {
         return Some(medium.transmittance(scene, ray, None, ray.t_max));
     }
-    if !scene.may_hide_surfaces() {
+    if !(scene.may_hide_surfaces() || scene.has_alpha()) {
         return None;
     }
     let end = ray.t_max.is_finite().then(|| ray.at(ray.t_max));
@@ -169,10 +186,16 @@ pub(crate) fn unblocked(scene: &Scene, mut medium: PathMedium, ray: &Ray) -> Opt
     while let Some(hit) = scene.rays.intersect(&segment) {
         let point = scene.rays.surface(&segment, &hit);
         left *= medium.transmittance(scene, &segment, Some(&point), hit.t);
-        if left.is_black() || !medium.hides(scene, &point, segment.direction) {
+        if medium.hides(scene, &point, segment.direction) {
+            medium.pass(scene, &point, segment.direction);
+        } else if scene.passage(&point).has_alpha {
+            left *= 1.0 - scene.alpha(&point).clamp(0.0, 1.0);
+        } else {
             return None;
         }
-        medium.pass(scene, &point, segment.direction);
+        if left.is_black() {
+            return None;
+        }
         segment.origin = spawn_origin(point.p, point.error, point.ng, segment.direction);
         if let Some(end) = end {
             let rest = end - segment.origin;

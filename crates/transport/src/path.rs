@@ -54,6 +54,8 @@ mod dimension {
     pub(super) const DIRECTION: u32 = 3;
     pub(super) const ROULETTE: u32 = 4;
     pub(super) const WAVELENGTH: u32 = 5;
+    /// And all after it: one for each surface that is not whole, along a ray.
+    pub(super) const CUTOUT: u32 = 6;
 }
 
 /// Events before Russian roulette begins.
@@ -65,7 +67,8 @@ pub(crate) const ROULETTE_MAX: f32 = 0.95;
 #[inline]
 #[must_use]
 pub fn arrive(scene: &Scene, path: &mut Path, ray: &Ray) -> Option<SurfacePoint> {
-    let (point, left) = follow(scene, &mut path.medium, ray);
+    let u = |cutout| path.stream.draw_1d(path.depth, dimension::CUTOUT + cutout);
+    let (point, left) = follow(scene, &mut path.medium, ray, u);
     path.throughput *= left;
     if let Some(point) = &point {
         let u = || path.stream.draw_1d(path.depth, dimension::WAVELENGTH);

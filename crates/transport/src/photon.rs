@@ -97,6 +97,8 @@ mod dimension {
     pub(super) const DIRECTION: u32 = 1;
     pub(super) const ROULETTE: u32 = 2;
     pub(super) const WAVELENGTH: u32 = 3;
+    /// And all after it: one for each surface that is not whole, along a ray.
+    pub(super) const CUTOUT: u32 = 4;
 }
 
 /// Follows a photon until it is absorbed, leaves the scene or is of no use any more; calls `store` for each deposit.
@@ -121,7 +123,9 @@ pub fn trace_photon(
     let mut kind = MapKind::Direct;
     let mut medium = PathMedium::VACUUM;
     for bounce in 0.. {
-        let (Some(point), left) = follow(scene, &mut medium, &ray) else {
+        let (Some(point), left) = follow(scene, &mut medium, &ray, |cutout| {
+            stream.draw_1d(bounce + 1, dimension::CUTOUT + cutout)
+        }) else {
             return;
         };
         flux *= left;
