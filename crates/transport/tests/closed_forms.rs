@@ -229,7 +229,7 @@ fn photons_in_a_closed_black_box_carry_the_flux_of_the_light() {
             texture: None,
             two_sided,
         };
-        let flux = flux_in_black_box(light, &[lamp.clone()]);
+        let flux = flux_in_black_box(light, std::slice::from_ref(&lamp));
         let expected = std::f32::consts::PI * 0.5 * sides;
         assert!(
             (flux.g - expected).abs() < 2e-3 * expected,
