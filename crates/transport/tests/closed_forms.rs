@@ -7,6 +7,7 @@ use glam::{DAffine3, Vec3};
 use radiometry::{Rgb, SampleStream, StageKey};
 use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, Microsurface};
 use spatial::{PhotonTree, Ray, Shape};
+use std::sync::Arc;
 use transport::{
     CausticMethod, DensityFilter, DensityScratch, DensitySettings, EmissionSampler, Environment, Event, Layer,
     LightSource, MapKind, MapKinds, Material, Methods, PHOTON_STAGE, Path, PathMedium, PhotonColumns, PhotonMap, Scene,
@@ -229,11 +230,35 @@ fn photons_in_a_closed_black_box_carry_the_flux_of_the_light() {
             texture: None,
             two_sided,
         };
-        let flux = flux_in_black_box(light, &[lamp.clone()]);
+        let flux = flux_in_black_box(light, std::slice::from_ref(&lamp));
         let expected = std::f32::consts::PI * 0.5 * sides;
         assert!(
             (flux.g - expected).abs() < 2e-3 * expected,
             "{flux:?} against {expected}"
+        );
+    }
+}
+
+#[test]
+fn photons_of_a_picture_carry_its_mean() {
+    let values = vec![0.0, 1.0, 2.0, 4.0, 1.0, 0.0];
+    let picture = texture::Picture::from_rgb(2, 1, values).expect("two texels");
+    let texture = texture::Texture::new(Arc::new(picture));
+    let mean = texture.mean_rgb();
+    let size = glam::Vec2::new(1.0, 0.5);
+    let lamp = (Shape::Quad { size }, at(0.0, 0.0, -1.0), black());
+    let light = LightSource::Area {
+        instance: 1,
+        radiance: mean,
+        texture: Some(Arc::new(texture)),
+        two_sided: false,
+    };
+    let flux = flux_in_black_box(light, &[lamp]);
+    for c in 0..3 {
+        let expected = std::f32::consts::PI * 0.5 * mean[c];
+        assert!(
+            (flux[c] - expected).abs() < 5e-3 * expected,
+            "{flux:?} against {mean:?}"
         );
     }
 }

@@ -154,7 +154,7 @@ fn prism(dispersion: Option<Dispersion>) -> Material {
 fn dispersive_glass_is_white_in_a_white_furnace_and_colours_an_edge() {
     let flint = Dispersion::from_abbe(1.5, 15.0);
     let ball = (Shape::Sphere { radius: 1.0 }, DAffine3::IDENTITY, prism(Some(flint)));
-    let furnace = scene(&[ball.clone()], white_sky());
+    let furnace = scene(std::slice::from_ref(&ball), white_sky());
     let seen = colour(&furnace, Ray::new(Vec3::new(0.8, 0.2, -4.0), Vec3::Z), 1 << 14);
     for channel in seen {
         assert!((channel - 1.0).abs() < 0.01, "{seen:?}");

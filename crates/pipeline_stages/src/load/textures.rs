@@ -9,6 +9,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use texture::{Picture, PictureLimits, decode};
 
+type TexturedPrim<'a> = (&'a PrimIndex, Option<&'a Diffuse>, Option<&'a Principled>);
+type MayBeTextured = Or<(With<Diffuse>, With<Principled>)>;
+
 /// A file to read.
 struct Wanted {
     path: PathBuf,
@@ -33,7 +36,7 @@ pub(super) fn import_textures(
     mut composed: ResMut<ComposedScene>,
     mut report: ResMut<Report>,
     mut counters: ResMut<Counters>,
-    materials: Query<(&PrimIndex, Option<&Diffuse>, Option<&Principled>), Or<(With<Diffuse>, With<Principled>)>>,
+    materials: Query<TexturedPrim<'_>, MayBeTextured>,
 ) {
     let mut findings = Findings::default();
     let mut rows: Vec<_> = materials.iter().collect();

@@ -14,7 +14,10 @@
 //!
 //! Counters: `tables/materials`, `tables/lights`.
 //!
-//! Limits: no textures, one uniform environment. After this set nothing but writing fails: whatever could is refused here.
+//! Fields that end in `_texture` take the place of the plain field, from the
+//! [`TextureStore`](pipeline_data::TextureStore); a material on a mesh with colours gets a second row, which they multiply.
+//!
+//! Limits: one environment. After this set nothing but writing fails: whatever could is refused here.
 
 mod frame;
 mod inputs;
