@@ -138,7 +138,7 @@ pub fn translate_model(
 ) -> Result<TranslatedModel, ModelError> {
     let translated = file_name(file).and_then(|name| match ModelKind::of(file.path) {
         Some(ModelKind::Gltf) => gltf::translate(file, name, schema, limits),
-        Some(ModelKind::Obj) => obj::translate(file, name, limits),
+        Some(ModelKind::Obj) => obj::translate(file, name, schema, limits),
         None => Err(not_a_model()),
     });
     translated.map_err(|fault| fault.in_file(file.name))

@@ -1,7 +1,5 @@
 //! Writes a layer.
 
-use std::fmt::Write;
-
 use glam::DVec3;
 
 use super::ModelLimits;
@@ -42,6 +40,16 @@ impl Component {
 
     pub(super) fn text(self, field: &'static str, value: &str) -> Self {
         self.raw(field, quoted(value))
+    }
+
+    /// Writes the fields: `(a: 1, b: 2)`.
+    pub(super) fn value(&self) -> String {
+        let fields: Vec<String> = self
+            .fields
+            .iter()
+            .map(|(field, value)| format!("{field}: {value}"))
+            .collect();
+        format!("({})", fields.join(", "))
     }
 }
 
@@ -147,14 +155,7 @@ impl<'l> LayerText<'l> {
 
     /// Adds a component to the open prim, before its children.
     pub(super) fn component(&mut self, component: &Component) {
-        let mut line = format!("{}: (", component.name);
-        for (number, (field, value)) in component.fields.iter().enumerate() {
-            let comma = if number > 0 { ", " } else { "" };
-            // Writing to a text does not fail.
-            let _ = write!(line, "{comma}{field}: {value}");
-        }
-        line.push_str("),");
-        self.line(&line);
+        self.line(&format!("{}: {},", component.name, component.value()));
     }
 
     /// Switches the open prim off.

@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
+pub(super) use super::material_json::*;
+
 /// The whole.
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
@@ -219,89 +221,4 @@ pub(super) struct Sampler {
     pub(super) mag_filter: Option<u32>,
     pub(super) wrap_s: Option<u32>,
     pub(super) wrap_t: Option<u32>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct Material {
-    pub(super) name: String,
-    pub(super) pbr_metallic_roughness: Metallic,
-    pub(super) normal_texture: Option<TextureInfo>,
-    pub(super) occlusion_texture: Option<TextureInfo>,
-    pub(super) emissive_texture: Option<TextureInfo>,
-    pub(super) emissive_factor: Option<[f64; 3]>,
-    pub(super) alpha_mode: Option<String>,
-    pub(super) double_sided: bool,
-    pub(super) extensions: Option<Box<MaterialExtensions>>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct Metallic {
-    pub(super) base_color_factor: Option<[f64; 4]>,
-    pub(super) base_color_texture: Option<TextureInfo>,
-    pub(super) metallic_factor: Option<f64>,
-    pub(super) roughness_factor: Option<f64>,
-    pub(super) metallic_roughness_texture: Option<TextureInfo>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct TextureInfo {
-    pub(super) index: u32,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct MaterialExtensions {
-    #[serde(rename = "KHR_materials_emissive_strength")]
-    pub(super) emissive_strength: Option<EmissiveStrength>,
-    #[serde(rename = "KHR_materials_ior")]
-    pub(super) ior: Option<Ior>,
-    #[serde(rename = "KHR_materials_transmission")]
-    pub(super) transmission: Option<Transmission>,
-    #[serde(rename = "KHR_materials_volume")]
-    pub(super) volume: Option<Volume>,
-    #[serde(rename = "KHR_materials_unlit")]
-    pub(super) unlit: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_clearcoat")]
-    pub(super) clearcoat: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_sheen")]
-    pub(super) sheen: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_specular")]
-    pub(super) specular: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_iridescence")]
-    pub(super) iridescence: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_anisotropy")]
-    pub(super) anisotropy: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_dispersion")]
-    pub(super) dispersion: Option<IgnoredAny>,
-    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
-    pub(super) specular_glossiness: Option<IgnoredAny>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct EmissiveStrength {
-    pub(super) emissive_strength: Option<f64>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Ior {
-    pub(super) ior: Option<f64>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct Transmission {
-    pub(super) transmission_factor: f64,
-    pub(super) transmission_texture: Option<TextureInfo>,
-}
-
-#[derive(Debug, Default, Deserialize)]
-#[serde(rename_all = "camelCase", default)]
-pub(super) struct Volume {
-    pub(super) thickness_factor: f64,
-    pub(super) attenuation_distance: Option<f64>,
-    pub(super) attenuation_color: Option<[f64; 3]>,
 }

@@ -1,8 +1,10 @@
-//! Materials: the nearest component for each. This is the one place that decides what a material becomes.
+//! Materials: all become `Principled`, which is the format's own model. This is the one place that decides how.
 //!
-//! Metal becomes `Conductor`, what lets light through `Dielectric`, everything else `Diffuse`; what glows gives the
-//! prims that use it an `Emission`. A texture counts as its middle, 0.5, until textures are read; one that says where a
-//! surface glows counts as 0, since a lamp must not shine all over.
+//! A texture is a field of its own in place of the plain one, with the factor that the file gives. Occlusion textures
+//! do nothing, since light transport finds occlusion, and neither do thickness textures, since light takes its real
+//! way through a solid. What is unlit shines of itself and reflects nothing.
+//!
+//! Source: Khronos Group, glTF 2.0 specification, section 3.9 and the extensions that the fields are named after.
 
 use std::collections::BTreeSet;
 
@@ -10,168 +12,257 @@ use glam::DVec3;
 
 use super::super::error::Fault;
 use super::super::write::Component;
-use super::graph::no_such;
-use super::json::{Material, MaterialExtensions, Root, TextureInfo, Volume};
+use super::Translation;
+use super::json::{AlphaMode, Clearcoat, Material, MaterialExtensions, MaybeTexture, Root, Sheen, TextureInfo, Volume};
+use super::texture::{Part, check_uses, texture_map};
+use crate::schema::ComponentInfo;
 
 /// A material on its way to a prim.
 #[derive(Debug)]
 pub(super) struct PrimMaterial {
     /// Of its prim.
     pub(super) name: String,
-    /// For the prim of the material.
     pub(super) surface: Component,
-    /// For each prim that uses it: light has to be on the geometry.
-    pub(super) emission: Option<Component>,
 }
 
-/// What a texture counts as.
-const TEXTURE_MEAN: f64 = 0.5;
+/// The component that a material becomes.
+pub(super) const SURFACE: &str = "Principled";
 
 /// The largest number that a component holds.
-const LARGEST: f64 = 3e38;
+pub(super) const LARGEST: f64 = 3e38;
 
-/// Converts a material that `at` names.
-pub(super) fn convert(
-    material: &Material,
-    root: &Root,
-    at: &str,
-    name: String,
-    left_out: &mut BTreeSet<&'static str>,
-) -> Result<PrimMaterial, Fault> {
-    check_textures(material, root, at)?;
-    note_absences(material, left_out);
-    let none = MaterialExtensions::default();
-    let extensions = material.extensions.as_deref().unwrap_or(&none);
-    Ok(PrimMaterial {
-        name,
-        surface: surface(material, extensions, left_out),
-        emission: emission(material, extensions),
-    })
-}
+/// The least distance in which a clear solid absorbs, so that it is not 0 in single precision.
+const LEAST_DISTANCE: f64 = 1e-30;
 
-fn surface(material: &Material, extensions: &MaterialExtensions, left_out: &mut BTreeSet<&'static str>) -> Component {
-    let pbr = &material.pbr_metallic_roughness;
-    let [r, g, b, _] = pbr.base_color_factor.unwrap_or([1.0; 4]);
-    let base = unit_range(DVec3::new(r, g, b)) * mean_of(pbr.base_color_texture.as_ref());
-    let rough = pbr.roughness_factor.unwrap_or(1.0) * mean_of(pbr.metallic_roughness_texture.as_ref());
-    let roughness = rough.clamp(0.0, 1.0);
-    let metallic = pbr.metallic_factor.unwrap_or(1.0) * mean_of(pbr.metallic_roughness_texture.as_ref());
-    let transmission = extensions.transmission.as_ref().map_or(0.0, |transmission| {
-        transmission.transmission_factor * mean_of(transmission.transmission_texture.as_ref())
-    });
-    if extensions.unlit.is_some() {
-        left_out.insert("unlit materials (they are lit)");
-        return Component::new("Diffuse").vector("albedo", base);
-    }
-    if metallic > 0.5 {
-        return Component::new("Conductor")
-            .vector("f0", base)
-            .number("roughness", roughness);
-    }
-    if transmission > 0.5 {
-        let ior = extensions
-            .ior
-            .as_ref()
-            .and_then(|ior| ior.ior)
-            .unwrap_or(1.5)
-            .clamp(1.0, 4.0);
-        let glass = Component::new("Dielectric").number("ior", ior).vector("tint", base);
-        return match &extensions.volume {
-            Some(volume) if volume.thickness_factor > 0.0 => {
-                let glass = glass.number("roughness", roughness);
-                match absorption(volume) {
-                    Some(absorption) => glass.vector("absorption", absorption),
-                    None => glass,
-                }
-            }
-            _ => {
-                if roughness > 0.0 {
-                    left_out.insert("roughness of thin glass");
-                }
-                glass.flag("thin", true)
-            }
+/// The range of `Principled.ior`.
+const IOR: std::ops::RangeInclusive<f64> = 1.0..=4.0;
+
+impl Translation<'_> {
+    /// Converts a material that `at` names; `info` describes its component.
+    pub(super) fn convert_material(
+        &mut self,
+        material: &Material,
+        info: &ComponentInfo,
+        at: &str,
+        name: String,
+    ) -> Result<PrimMaterial, Fault> {
+        check_uses(material, self.root, at)?;
+        let none = MaterialExtensions::default();
+        let extensions = material.extensions.as_deref().unwrap_or(&none);
+        note_absences(material, extensions, &mut self.left_out);
+        let ior = extensions.ior.ior;
+        let shown = ior.map(|ior| if ior == 0.0 { *IOR.end() } else { clamped(ior, IOR) });
+        if let (Some(ior), Some(shown)) = (ior, shown)
+            && ior != shown
+        {
+            let message = format!("an index of refraction of {ior} is out of range, {shown} is used");
+            self.warn(&format!("{at}.extensions.KHR_materials_ior.ior"), message);
+        }
+        let mut surface = Surface {
+            component: Component::new(SURFACE),
+            info,
+            root: self.root,
+            file_name: self.file_name,
+            left_out: &mut self.left_out,
         };
+        if extensions.unlit.is_some() {
+            surface.unlit(material);
+        } else {
+            surface.lit(material, extensions, shown);
+        }
+        surface.alpha(material);
+        Ok(PrimMaterial {
+            name,
+            surface: surface.component,
+        })
     }
-    Component::new("Diffuse").vector("albedo", base)
 }
 
-/// The absorption that leaves `attenuationColor` after `attenuationDistance`: −ln(colour) / distance.
-fn absorption(volume: &Volume) -> Option<DVec3> {
-    let distance = volume.attenuation_distance.filter(|distance| *distance > 0.0)?;
-    let colour = DVec3::from_array(volume.attenuation_color.unwrap_or([1.0; 3]));
-    // Black is not reached in finite glass.
-    let absorption = colour
-        .clamp(DVec3::splat(1e-6), DVec3::ONE)
-        .map(|c| (0.0 - libm::log(c)) / distance);
-    Some(absorption.min(DVec3::splat(LARGEST)))
+/// A component that is being written, of the fields that the vocabulary has.
+struct Surface<'t> {
+    component: Component,
+    info: &'t ComponentInfo,
+    root: &'t Root,
+    file_name: &'t str,
+    left_out: &'t mut BTreeSet<&'static str>,
 }
 
-fn emission(material: &Material, extensions: &MaterialExtensions) -> Option<Component> {
-    let strength = extensions.emissive_strength.as_ref();
-    let strength = strength.and_then(|found| found.emissive_strength).unwrap_or(1.0);
-    let factor = DVec3::from_array(material.emissive_factor?);
-    let radiance = (factor * strength).clamp(DVec3::ZERO, DVec3::splat(LARGEST));
-    if radiance == DVec3::ZERO || material.emissive_texture.is_some() {
-        return None;
+impl Surface<'_> {
+    fn unlit(&mut self, material: &Material) {
+        self.colour("base_color", DVec3::ZERO, &None);
+        self.plain("specular", 0.0);
+        let texture = &material.pbr_metallic_roughness.base_color_texture;
+        self.colour("emission", base_color(material), texture);
     }
-    let emission = Component::new("Emission").vector("radiance", radiance);
-    Some(if material.double_sided {
-        emission.flag("two_sided", true)
-    } else {
-        emission
-    })
-}
 
-fn unit_range(colour: DVec3) -> DVec3 {
-    colour.clamp(DVec3::ZERO, DVec3::ONE)
-}
+    fn lit(&mut self, material: &Material, extensions: &MaterialExtensions, ior: Option<f64>) {
+        let pbr = &material.pbr_metallic_roughness;
+        self.colour("base_color", base_color(material), &pbr.base_color_texture);
+        let texture = &pbr.metallic_roughness_texture;
+        self.share("metallic", pbr.metallic_factor.unwrap_or(1.0), texture, Part::B);
+        self.share("roughness", pbr.roughness_factor.unwrap_or(1.0), texture, Part::G);
+        if let Some(ior) = ior {
+            self.plain("ior", ior);
+        }
+        let specular = &extensions.specular;
+        if specular.specular_factor.is_some() || specular.specular_texture.is_some() {
+            let factor = specular.specular_factor.unwrap_or(1.0);
+            self.share("specular", factor, &specular.specular_texture, Part::A);
+        }
+        if specular.specular_color_factor.is_some() || specular.specular_color_texture.is_some() {
+            let factor = radiance(specular.specular_color_factor.unwrap_or([1.0; 3]), 1.0);
+            self.colour("specular_color", factor, &specular.specular_color_texture);
+        }
+        let transmission = &extensions.transmission;
+        if transmission.transmission_factor > 0.0 {
+            let (factor, texture) = (transmission.transmission_factor, &transmission.transmission_texture);
+            self.share("transmission", factor, texture, Part::R);
+            self.volume(&extensions.volume);
+        }
+        self.clearcoat(&extensions.clearcoat);
+        self.sheen(&extensions.sheen);
+        self.emission(material, extensions.emissive_strength.emissive_strength.unwrap_or(1.0));
+        self.normal(material);
+    }
 
-fn mean_of(texture: Option<&TextureInfo>) -> f64 {
-    if texture.is_some() { TEXTURE_MEAN } else { 1.0 }
-}
-
-fn check_textures(material: &Material, root: &Root, at: &str) -> Result<(), Fault> {
-    let pbr = &material.pbr_metallic_roughness;
-    for (name, texture) in [
-        ("pbrMetallicRoughness.baseColorTexture", &pbr.base_color_texture),
-        (
-            "pbrMetallicRoughness.metallicRoughnessTexture",
-            &pbr.metallic_roughness_texture,
-        ),
-        ("normalTexture", &material.normal_texture),
-        ("occlusionTexture", &material.occlusion_texture),
-        ("emissiveTexture", &material.emissive_texture),
-    ] {
-        let count = root.textures.len();
-        if let Some(texture) = texture.as_ref().filter(|texture| texture.index as usize >= count) {
-            return Err(no_such(&format!("{at}.{name}.index"), "texture", texture.index, count));
+    fn volume(&mut self, volume: &Volume) {
+        if volume.thickness_factor <= 0.0 {
+            return;
+        }
+        self.plain("thickness", volume.thickness_factor);
+        if let Some(distance) = volume.attenuation_distance.filter(|distance| *distance > 0.0) {
+            let colour = unit_range(volume.attenuation_color.unwrap_or([1.0; 3]));
+            self.colour("attenuation_color", colour, &None);
+            self.plain("attenuation_distance", distance.max(LEAST_DISTANCE));
         }
     }
-    Ok(())
+
+    fn clearcoat(&mut self, coat: &Clearcoat) {
+        if coat.clearcoat_factor > 0.0 {
+            self.share("clearcoat", coat.clearcoat_factor, &coat.clearcoat_texture, Part::R);
+            let (factor, texture) = (coat.clearcoat_roughness_factor, &coat.clearcoat_roughness_texture);
+            self.share("clearcoat_roughness", factor, texture, Part::G);
+        }
+    }
+
+    fn sheen(&mut self, sheen: &Sheen) {
+        let colour = unit_range(sheen.sheen_color_factor);
+        if colour != DVec3::ZERO {
+            self.colour("sheen", colour, &sheen.sheen_color_texture);
+            let (factor, texture) = (sheen.sheen_roughness_factor, &sheen.sheen_roughness_texture);
+            self.share("sheen_roughness", factor, texture, Part::A);
+        }
+    }
+
+    fn emission(&mut self, material: &Material, strength: f64) {
+        let emitted = radiance(material.emissive_factor.unwrap_or([0.0; 3]), strength);
+        if emitted != DVec3::ZERO {
+            self.colour("emission", emitted, &material.emissive_texture);
+            if material.double_sided {
+                self.left_out.insert("light from the backs of double-sided materials");
+            }
+        }
+    }
+
+    fn normal(&mut self, material: &Material) {
+        let Some(texture) = &material.normal_texture else {
+            return;
+        };
+        if self.texture("normal", texture, Part::Colour, DVec3::ONE)
+            && let Some(scale) = texture.scale.filter(|scale| *scale != 1.0)
+        {
+            self.plain("normal_scale", scale);
+        }
+    }
+
+    /// Coverage, where it can be less than all: a vocabulary without textures of it does not have that.
+    fn alpha(&mut self, material: &Material) {
+        if material.alpha_mode == AlphaMode::Opaque {
+            return;
+        }
+        if self.info.field("alpha_cutoff").is_none() {
+            self.left_out.insert("transparency by alpha");
+            return;
+        }
+        let pbr = &material.pbr_metallic_roughness;
+        let [_, _, _, alpha] = pbr.base_color_factor.unwrap_or([1.0; 4]);
+        self.share("alpha", alpha, &pbr.base_color_texture, Part::A);
+        if material.alpha_mode == AlphaMode::Mask {
+            self.plain("alpha_cutoff", material.alpha_cutoff.unwrap_or(0.5).clamp(0.0, 1.0));
+        }
+    }
+
+    fn colour(&mut self, field: &'static str, factor: DVec3, texture: &MaybeTexture) {
+        if !self.textured(field, texture, Part::Colour, factor) {
+            self.add(|component| component.vector(field, factor));
+        }
+    }
+
+    /// Writes a number from 0 to 1.
+    fn share(&mut self, field: &'static str, factor: f64, texture: &MaybeTexture, part: Part) {
+        let factor = factor.clamp(0.0, 1.0);
+        if !self.textured(field, texture, part, DVec3::splat(factor)) {
+            self.plain(field, factor);
+        }
+    }
+
+    fn plain(&mut self, field: &'static str, value: f64) {
+        self.add(|component| component.number(field, value.clamp(-LARGEST, LARGEST)));
+    }
+
+    /// Writes a texture in place of a field, if there is one that does something.
+    fn textured(&mut self, field: &str, texture: &MaybeTexture, part: Part, factor: DVec3) -> bool {
+        let texture = texture.as_deref().filter(|_| factor != DVec3::ZERO);
+        texture.is_some_and(|texture| self.texture(field, texture, part, factor))
+    }
+
+    fn texture(&mut self, field: &str, texture: &TextureInfo, part: Part, factor: DVec3) -> bool {
+        let Some(known) = self.info.field(&format!("{field}_texture")) else {
+            self.left_out.insert("textures");
+            return false;
+        };
+        match texture_map(self.root, self.file_name, texture, part, factor) {
+            Some(map) => self.add(|component| component.raw(known.name, map)),
+            None => {
+                self.left_out.insert("textures that are neither PNG nor JPEG");
+                return false;
+            }
+        }
+        true
+    }
+
+    fn add(&mut self, field: impl FnOnce(Component) -> Component) {
+        let component = std::mem::replace(&mut self.component, Component::new(SURFACE));
+        self.component = field(component);
+    }
 }
 
-fn note_absences(material: &Material, left_out: &mut BTreeSet<&'static str>) {
-    let none = MaterialExtensions::default();
-    let extensions = material.extensions.as_deref().unwrap_or(&none);
-    let pbr = &material.pbr_metallic_roughness;
-    let transmission = extensions.transmission.as_ref();
-    let textures = [
-        &pbr.base_color_texture,
-        &pbr.metallic_roughness_texture,
-        &material.normal_texture,
-    ];
-    let more = [&material.occlusion_texture, &material.emissive_texture];
-    let textured = textures.into_iter().chain(more).any(Option::is_some)
-        || transmission.is_some_and(|transmission| transmission.transmission_texture.is_some());
+fn base_color(material: &Material) -> DVec3 {
+    let [r, g, b, _] = material.pbr_metallic_roughness.base_color_factor.unwrap_or([1.0; 4]);
+    unit_range([r, g, b])
+}
+
+fn unit_range(colour: [f64; 3]) -> DVec3 {
+    DVec3::from_array(colour).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+/// A colour without an upper end.
+fn radiance(colour: [f64; 3], strength: f64) -> DVec3 {
+    (DVec3::from_array(colour) * strength).clamp(DVec3::ZERO, DVec3::splat(LARGEST))
+}
+
+fn clamped(number: f64, range: std::ops::RangeInclusive<f64>) -> f64 {
+    number.clamp(*range.start(), *range.end())
+}
+
+fn note_absences(material: &Material, extensions: &MaterialExtensions, left_out: &mut BTreeSet<&'static str>) {
+    let glows_behind = extensions.unlit.is_some() && material.double_sided;
     for (absent, what) in [
-        (textured, "textures"),
+        (glows_behind, "light from the backs of double-sided materials"),
         (
-            material.alpha_mode.as_deref().is_some_and(|mode| mode != "OPAQUE"),
-            "transparency by alpha",
+            extensions.clearcoat.clearcoat_normal_texture.is_some(),
+            "normal textures of clear coats",
         ),
-        (extensions.clearcoat.is_some(), "clearcoat"),
-        (extensions.sheen.is_some(), "sheen"),
-        (extensions.specular.is_some(), "specular strength and colour"),
         (extensions.iridescence.is_some(), "iridescence"),
         (extensions.anisotropy.is_some(), "anisotropy"),
         (extensions.dispersion.is_some(), "dispersion"),

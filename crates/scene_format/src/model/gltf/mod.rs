@@ -16,9 +16,11 @@ mod image;
 mod json;
 mod lamp;
 mod material;
+mod material_json;
 mod mesh;
 mod node;
 mod primitive;
+mod texture;
 mod triangles;
 
 pub(super) use mesh::{GltfMeshes, is_fit};
@@ -147,6 +149,13 @@ impl Translation<'_> {
 
     fn convert_materials(&mut self, limits: &ModelLimits) -> Result<(), Fault> {
         let root = self.root;
+        texture::check_textures(root)?;
+        self.warnings.extend(texture::check_samplers(root));
+        let schema = self.schema;
+        let Some(info) = schema.component(material::SURFACE) else {
+            self.left_out.insert("materials");
+            return Ok(());
+        };
         let wanted: Vec<Wanted<'_>> = root
             .materials
             .iter()
@@ -158,24 +167,18 @@ impl Translation<'_> {
             .collect();
         let names = sibling_names(&wanted, &[], limits.name_bytes);
         for ((number, material), name) in root.materials.iter().enumerate().zip(names) {
-            let at = format!("materials[{number}]");
-            let converted = material::convert(material, root, &at, name, &mut self.left_out)?;
+            let converted = self.convert_material(material, info, &format!("materials[{number}]"), name)?;
             self.materials.push(converted);
         }
-        let needs_default = root
-            .meshes
-            .iter()
-            .flat_map(|mesh| &mesh.primitives)
-            .any(|primitive| primitive.material.is_none() && primitive::is_drawn(primitive));
-        if needs_default {
+        let mut primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+        if primitives.any(|primitive| primitive.material.is_none() && primitive::is_drawn(primitive)) {
             let taken: Vec<&str> = self.materials.iter().map(|material| material.name.as_str()).collect();
             let wanted = Wanted {
                 name: "Default",
                 fallback: String::new(),
             };
             let name = sibling_names(&[wanted], &taken, limits.name_bytes).concat();
-            let plain = json::Material::default();
-            self.default_material = Some(material::convert(&plain, root, "", name, &mut self.left_out)?);
+            self.default_material = Some(self.convert_material(&json::Material::default(), info, "", name)?);
         }
         Ok(())
     }
@@ -195,21 +198,20 @@ impl Translation<'_> {
         Ok(())
     }
 
-    /// The components that give a prim its material.
-    fn bind(&self, material: Option<u32>, at: &str) -> Result<Vec<Component>, Fault> {
-        let found =
-            match material {
-                None => self.default_material.as_ref(),
-                Some(index) => Some(self.materials.get(index as usize).ok_or_else(|| {
-                    graph::no_such(&format!("{at}.material"), "material", index, self.materials.len())
-                })?),
-            };
-        let Some(found) = found else {
-            return Ok(Vec::new());
+    /// The component that gives a prim its material.
+    fn bind(&self, material: Option<u32>, at: &str) -> Result<Option<Component>, Fault> {
+        let count = self.root.materials.len();
+        let found = match material {
+            None => self.default_material.as_ref(),
+            Some(index) if index as usize >= count => {
+                return Err(graph::no_such(&format!("{at}.material"), "material", index, count));
+            }
+            Some(index) => self.materials.get(index as usize),
         };
-        let path = format!("/{}/{MATERIALS}/{}", self.root_name, found.name);
-        let binding = Component::new("MaterialBinding").text("target", &path);
-        Ok(std::iter::once(binding).chain(found.emission.clone()).collect())
+        Ok(found.map(|found| {
+            let path = format!("/{}/{MATERIALS}/{}", self.root_name, found.name);
+            Component::new("MaterialBinding").text("target", &path)
+        }))
     }
 
     /// All that is left out becomes one warning.

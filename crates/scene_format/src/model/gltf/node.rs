@@ -161,7 +161,7 @@ impl Translation<'_> {
         text.component(&component);
         let at = format!("meshes[{mesh}].primitives[{primitive}]");
         let material = self.root.meshes[mesh as usize].primitives[primitive as usize].material;
-        for component in self.bind(material, &at)? {
+        if let Some(component) = self.bind(material, &at)? {
             text.component(&component);
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::super::error::ModelWarning;
+use super::super::error::{ModelWarning, quote_some};
 use super::super::files::{in_words, read_bytes, resolve_beside};
 use super::super::{ModelFile, ModelLimits};
 use super::mtl::Library;
@@ -54,7 +54,7 @@ impl Libraries {
         self.files.push(path);
         match bytes.as_deref().map(std::str::from_utf8) {
             Ok(Ok(text)) => {
-                for (line, problem) in self.library.read(text) {
+                for (line, problem) in self.library.read(text, &|texture| find_texture(texture, name, file)) {
                     self.warn(&format!("{name}:{line}"), problem);
                 }
             }
@@ -69,4 +69,30 @@ impl Libraries {
             message,
         });
     }
+}
+
+/// Endings of pictures that can be read.
+const PICTURES: [&str; 5] = ["png", "jpg", "jpeg", "exr", "hdr"];
+
+/// Finds a texture that a library names relative to itself; gives its name relative to the model.
+///
+/// Backslashes are taken for slashes, since many programs write them.
+fn find_texture(texture: &str, library: &str, file: &ModelFile<'_>) -> Result<String, String> {
+    if texture.starts_with('-') {
+        return Err("options of textures are not supported".to_owned());
+    }
+    let texture = texture.replace('\\', "/");
+    let is_picture = |ending: &str| PICTURES.iter().any(|known| ending.eq_ignore_ascii_case(known));
+    if !texture.rsplit_once('.').is_some_and(|(_, ending)| is_picture(ending)) {
+        return Err(format!(
+            "{} is no PNG, JPEG, EXR or HDR file",
+            quote_some([&texture[..]].into_iter())
+        ));
+    }
+    let name = match library.rsplit_once('/') {
+        Some((folder, _)) if !texture.starts_with('/') => format!("{folder}/{texture}"),
+        _ => texture,
+    };
+    resolve_beside(&name, file).map_err(|problem| in_words(&problem))?;
+    Ok(name)
 }

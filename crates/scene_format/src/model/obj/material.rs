@@ -17,20 +17,22 @@ pub(super) struct PrimMaterial {
 }
 
 /// Converts a material; `name` is that of its prim.
-pub(super) fn convert(material: &MtlMaterial, name: String) -> PrimMaterial {
+///
+/// - `has_textures`: whether `Diffuse` can have a texture.
+pub(super) fn convert(material: &MtlMaterial, name: String, has_textures: bool) -> PrimMaterial {
     let radiance = material
         .emission
         .unwrap_or(DVec3::ZERO)
         .clamp(DVec3::ZERO, DVec3::splat(3e38));
     PrimMaterial {
         name,
-        surface: surface(material),
+        surface: surface(material, has_textures),
         emission: (radiance != DVec3::ZERO).then(|| Component::new("Emission").vector("radiance", radiance)),
     }
 }
 
 /// Illumination models 4, 6, 7 and 9 are of glass, 3 and 5 of mirrors.
-fn surface(material: &MtlMaterial) -> Component {
+fn surface(material: &MtlMaterial, has_textures: bool) -> Component {
     let diffuse = unit_range(material.diffuse.unwrap_or(DVec3::splat(0.8)));
     let specular = unit_range(material.specular.unwrap_or(DVec3::ZERO));
     let is_model = |models: &[f64]| material.illumination.is_some_and(|model| models.contains(&model));
@@ -60,7 +62,20 @@ fn surface(material: &MtlMaterial) -> Component {
             .vector("f0", specular)
             .number("roughness", roughness(material));
     }
-    Component::new("Diffuse").vector("albedo", diffuse)
+    match &material.diffuse_texture {
+        Some(texture) if has_textures => {
+            Component::new("Diffuse").raw("albedo_texture", texture_map(material, texture))
+        }
+        _ => Component::new("Diffuse").vector("albedo", diffuse),
+    }
+}
+
+fn texture_map(material: &MtlMaterial, file: &str) -> String {
+    let map = Component::new("TextureMap").text("file", file);
+    match unit_range(material.diffuse.unwrap_or(DVec3::ONE)) {
+        DVec3::ONE => map.value(),
+        factor => map.vector("factor", factor).value(),
+    }
 }
 
 /// The roughness of a highlight: α² = 2 / (exponent + 2), and α is the roughness squared. Above 1000 it is a mirror.

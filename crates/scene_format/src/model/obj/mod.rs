@@ -15,9 +15,10 @@ use super::names::{Wanted, sibling_names};
 use super::write::{Component, LayerText};
 use super::{ModelFile, ModelLimits, TranslatedModel};
 use crate::mesh::{Lines, MeshData, MeshError, MeshLimits, ObjFile, ObjParts, keyword_and_rest, obj_text, words};
+use crate::schema::Schema;
 use libraries::Libraries;
 use material::PrimMaterial;
-use mtl::Library;
+use mtl::{Library, MtlMaterial};
 
 /// An OBJ file whose meshes can be read.
 #[derive(Debug)]
@@ -74,7 +75,12 @@ impl ObjMeshes {
 }
 
 /// Writes a file as a layer.
-pub(super) fn translate(file: &ModelFile<'_>, file_name: &str, limits: &ModelLimits) -> Result<TranslatedModel, Fault> {
+pub(super) fn translate(
+    file: &ModelFile<'_>,
+    file_name: &str,
+    schema: &Schema<'_>,
+    limits: &ModelLimits,
+) -> Result<TranslatedModel, Fault> {
     let text = obj_text(file.name, file.bytes, limits.bytes)?;
     let mut parts = ObjParts::default();
     let mut libraries = Libraries::default();
@@ -101,19 +107,21 @@ pub(super) fn translate(file: &ModelFile<'_>, file_name: &str, limits: &ModelLim
         })
         .collect();
     let names = sibling_names(&wanted, &[], limits.name_bytes);
+    let diffuse = schema.component("Diffuse");
+    let has_textures = diffuse.is_some_and(|info| info.field("albedo_texture").is_some());
     let mut translation = Translation {
         file_name,
         root_name: root_name(file_name, limits),
         materials: materials
             .zip(names)
-            .map(|(material, name)| material::convert(material, name))
+            .map(|(material, name)| material::convert(material, name, has_textures))
             .collect(),
         parts: &parts,
         library: &libraries.library,
         warnings: libraries.warnings.clone(),
     };
     translation.warn_of_unknown();
-    translation.warn_of_textures();
+    translation.warn_of_textures(has_textures);
     Ok(TranslatedModel {
         text: translation.write(limits)?,
         warnings: translation.warnings,
@@ -243,11 +251,16 @@ impl Translation<'_> {
         }
     }
 
-    fn warn_of_textures(&mut self) {
-        if self.library.materials.iter().any(|material| material.is_textured) {
+    fn warn_of_textures(&mut self, has_textures: bool) {
+        let lost = |material: &MtlMaterial, converted: &PrimMaterial| {
+            let shown = has_textures && converted.surface.name == "Diffuse";
+            material.has_other_textures || (material.diffuse_texture.is_some() && !shown)
+        };
+        let mut pairs = self.library.materials.iter().zip(&self.materials);
+        if pairs.any(|(material, converted)| lost(material, converted)) {
             self.warnings.push(ModelWarning {
                 at: String::new(),
-                message: "not supported yet, so left out: textures".to_owned(),
+                message: "not supported yet, so left out: textures other than `map_Kd` of matt materials".to_owned(),
             });
         }
     }

@@ -30,9 +30,14 @@ pub(super) struct MtlMaterial {
     pub(super) metallic: Option<f64>,
     /// `illum`: the way to shade it, from 0 to 10.
     pub(super) illumination: Option<f64>,
-    /// Whether it has a texture.
-    pub(super) is_textured: bool,
+    /// `map_Kd`: a file with the diffuse reflectance, relative to the model. It multiplies `Kd`.
+    pub(super) diffuse_texture: Option<String>,
+    /// Whether it has another texture.
+    pub(super) has_other_textures: bool,
 }
+
+/// From what a library calls a texture to what the layer calls it, or why that is impossible.
+pub(super) type FindTexture<'f> = dyn Fn(&str) -> Result<String, String> + 'f;
 
 /// The materials of all libraries of a file.
 #[derive(Debug, Default)]
@@ -49,7 +54,9 @@ impl Library {
     }
 
     /// Adds the materials of a library. Gives the lines that cannot be read, at most ten, with what is wrong.
-    pub(super) fn read(&mut self, text: &str) -> Vec<(usize, String)> {
+    ///
+    /// - `find_texture`: finds the file that the library names.
+    pub(super) fn read(&mut self, text: &str, find_texture: &FindTexture<'_>) -> Vec<(usize, String)> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut problems = Vec::new();
         let mut current: Option<usize> = None;
@@ -62,7 +69,7 @@ impl Library {
             let Some(material) = current.map(|row| &mut self.materials[row]) else {
                 continue;
             };
-            if let Err(problem) = material.statement(keyword, &text)
+            if let Err(problem) = material.statement(keyword, rest, &text, find_texture)
                 && problems.len() < 10
             {
                 problems.push((line, format!("{problem}, so `{keyword}` is left out")));
@@ -86,7 +93,13 @@ impl Library {
 }
 
 impl MtlMaterial {
-    fn statement(&mut self, keyword: &str, line: &str) -> Result<(), String> {
+    fn statement(
+        &mut self,
+        keyword: &str,
+        rest: &str,
+        line: &str,
+        find_texture: &FindTexture<'_>,
+    ) -> Result<(), String> {
         match keyword {
             "Kd" => self.diffuse = Some(colour(line)?),
             "Ks" => self.specular = Some(colour(line)?),
@@ -99,7 +112,8 @@ impl MtlMaterial {
             "Pr" => self.roughness = Some(number(line)?),
             "Pm" => self.metallic = Some(number(line)?),
             "illum" => self.illumination = Some(number(line)?),
-            _ if is_map(keyword) => self.is_textured = true,
+            "map_Kd" => self.diffuse_texture = Some(find_texture(rest)?),
+            _ if is_map(keyword) => self.has_other_textures = true,
             _ => {}
         }
         Ok(())

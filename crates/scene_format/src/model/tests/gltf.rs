@@ -5,8 +5,7 @@ use serde_json::json;
 
 use super::document::{changed, square};
 use super::vocabulary::{
-    Camera, Conductor, Dielectric, Diffuse, Emission, MaterialBinding, Mesh, PointLight, SpotLight, Transform,
-    component, compose, paths,
+    Camera, MaterialBinding, Mesh, PointLight, Principled, SpotLight, Transform, component, compose, paths,
 };
 use super::*;
 
@@ -27,7 +26,7 @@ fn the_layer_reads_like_one_that_a_person_wrote() {
                     "Materials": Def(
                         children: {
                             "Gold": Def(
-                                Conductor: (f0: (1.0, 0.75, 0.25), roughness: 0.25),
+                                Principled: (base_color: (1.0, 0.75, 0.25), metallic: 1.0, roughness: 0.25),
                             ),
                         },
                     ),
@@ -145,62 +144,10 @@ fn each_primitive_has_its_own_prim_and_material() {
     assert_eq!(bound("/square/Top/Square/Primitive1"), "/square/Materials/Default");
     let child: Mesh = component(&scene, "/square/Top/Square/Primitive1_2", "Mesh");
     assert_eq!((child.mesh.as_deref(), child.primitive), (Some("#1"), None));
-    let default: Conductor = component(&scene, "/square/Materials/Default", "Conductor");
-    assert_eq!((default.f0, default.roughness), (Some(Vec3::ONE), 1.0));
-}
-
-#[test]
-fn materials_become_the_nearest_component() {
-    let metallic = "/materials/0/pbrMetallicRoughness/metallicFactor";
-    let surface = |changes: &[(&str, serde_json::Value)]| composed(changes).0;
-    let gold: Conductor = component(&surface(&[]), "/square/Materials/Gold", "Conductor");
-    assert_eq!((gold.f0, gold.roughness), (Some(Vec3::new(1.0, 0.75, 0.25)), 0.25));
-    let matt = surface(&[(metallic, json!(0.4))]);
-    let matt: Diffuse = component(&matt, "/square/Materials/Gold", "Diffuse");
-    assert_eq!(matt.albedo, Vec3::new(1.0, 0.75, 0.25));
-    let glass = surface(&[
-        (metallic, json!(0)),
-        (
-            "/materials/0/extensions",
-            json!({
-                "KHR_materials_transmission": {"transmissionFactor": 1},
-                "KHR_materials_ior": {"ior": 1.25},
-                "KHR_materials_volume": {
-                    "thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [1.0, 0.5, 0.0],
-                },
-            }),
-        ),
-    ]);
-    let glass: Dielectric = component(&glass, "/square/Materials/Gold", "Dielectric");
-    assert_eq!((glass.ior, glass.roughness, glass.thin), (1.25, 0.25, false));
-    let expected = Vec3::new(0.0, std::f32::consts::LN_2 / 2.0, 6.907_755);
-    assert!(glass.absorption.abs_diff_eq(expected, 1e-5), "{}", glass.absorption);
-    let (pane, warnings) = composed(&[
-        (metallic, json!(0)),
-        (
-            "/materials/0/extensions",
-            json!({"KHR_materials_transmission": {"transmissionFactor": 1}}),
-        ),
-    ]);
-    let pane: Dielectric = component(&pane, "/square/Materials/Gold", "Dielectric");
-    assert!(pane.thin && pane.roughness == 0.0);
-    assert_eq!(warnings, ["not supported yet, so left out: roughness of thin glass"]);
-}
-
-#[test]
-fn what_glows_does_so_on_each_prim() {
-    let (scene, _) = composed(&[
-        ("/materials/0/emissiveFactor", json!([1.0, 0.5, 0.0])),
-        ("/materials/0/doubleSided", json!(true)),
-        (
-            "/materials/0/extensions",
-            json!({"KHR_materials_emissive_strength": {"emissiveStrength": 8}}),
-        ),
-    ]);
-    let emission: Emission = component(&scene, "/square/Top/Square", "Emission");
+    let default: Principled = component(&scene, "/square/Materials/Default", "Principled");
     assert_eq!(
-        (emission.radiance, emission.two_sided),
-        (Vec3::new(8.0, 4.0, 0.0), true)
+        (default.base_color, default.metallic, default.roughness),
+        (Vec3::ONE, 1.0, 1.0)
     );
 }
 

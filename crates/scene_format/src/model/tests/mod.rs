@@ -4,6 +4,7 @@ mod broken;
 mod document;
 mod gltf;
 mod images;
+mod materials;
 mod meshes;
 mod mutate;
 mod obj;

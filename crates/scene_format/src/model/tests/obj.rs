@@ -117,18 +117,53 @@ fn materials_become_the_nearest_component() {
 #[test]
 fn what_is_missing_is_a_warning() {
     let obj = format!("mtllib b.mtl ../c.mtl a.mtl\nusemtl steel\n{CORNERS}f 1 2 3\nmtllib a.mtl\n");
-    let found = translated(&obj, "Kd 1 1 1\nnewmtl m\nKd 1 x\nmap_Kd a.png\n");
+    let found = translated(&obj, "Kd 1 1 1\nnewmtl m\nKd 1 x\nmap_Kd a.png\nmap_Bump a.png\n");
     assert_eq!(found.files.len(), 1);
-    assert_eq!(warnings(&found).len(), 5);
+    assert_eq!(warnings(&found).len(), 6);
     assert!(warnings(&found)[1].starts_with("line 1: no materials: `../c.mtl` lies outside of "));
     for part in [
         "line 1: no materials: there is no file `b.mtl`, did you mean `a.mtl`?",
         "a.mtl:3: `x` is not a number, so `Kd` is left out",
         "no library has these materials: \"steel\"",
-        "not supported yet, so left out: textures",
+        "a.mtl:4: there is no file `a.png`, so `map_Kd` is left out",
+        "not supported yet, so left out: textures other than `map_Kd` of matt materials",
     ] {
         assert!(warnings(&found).iter().any(|warning| warning == part), "{part}");
     }
+}
+
+#[test]
+fn a_picture_of_the_matt_colour_is_a_texture() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path().canonicalize().unwrap();
+    std::fs::create_dir(root.join("lib")).unwrap();
+    std::fs::write(root.join("lib/wood grain.png"), "").unwrap();
+    let mtl = "newmtl a\nmap_Kd wood grain.png\nnewmtl b\nKd .5 .5 .25\nmap_Kd .\\wood grain.png\n\
+               newmtl c\nKd .5 .5 .5\nmap_Kd -s 2 2 2 wood grain.png\nnewmtl d\nmap_Kd wood.tga\n\
+               newmtl e\nmap_Kd /wood.png\nnewmtl f\nPm 1\nmap_Kd wood grain.png\n";
+    std::fs::write(root.join("lib/a.mtl"), mtl).unwrap();
+    let path = root.join("box.obj");
+    let obj = format!("mtllib lib/a.mtl\n{CORNERS}f 1 2 3\n");
+    let found = with_schema(|schema| {
+        let file = file(&path, &root, obj.as_bytes());
+        translate_model(&file, schema, &ModelLimits::default()).unwrap()
+    });
+    let scene = compose(&found.text);
+    let matt = |name: &str| component::<Diffuse>(&scene, &format!("/box/Materials/{name}"), "Diffuse");
+    let plain = matt("a").albedo_texture.unwrap();
+    assert_eq!((&plain.file.0[..], plain.factor), ("lib/wood grain.png", None));
+    let tinted = matt("b").albedo_texture.unwrap();
+    assert_eq!(
+        (&tinted.file.0[..], tinted.factor),
+        ("lib/./wood grain.png", Some(Vec3::new(0.5, 0.5, 0.25)))
+    );
+    assert_eq!((matt("c").albedo, matt("c").albedo_texture), (Vec3::splat(0.5), None));
+    insta::assert_snapshot!(warnings(&found).join("\n"), @r#"
+    lib/a.mtl:8: options of textures are not supported, so `map_Kd` is left out
+    lib/a.mtl:10: "wood.tga" is no PNG, JPEG, EXR or HDR file, so `map_Kd` is left out
+    lib/a.mtl:12: `/wood.png` is absolute, so `map_Kd` is left out
+    not supported yet, so left out: textures other than `map_Kd` of matt materials
+    "#);
 }
 
 #[test]

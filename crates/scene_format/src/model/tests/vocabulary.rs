@@ -1,7 +1,8 @@
 //! The components that models are translated to, as small copies, and how to read a layer with them.
 
-use bevy_reflect::{Reflect, TypeRegistry, std_traits::ReflectDefault};
-use glam::{DMat4, DQuat, DVec3, Vec3};
+use bevy_reflect::{Reflect, ReflectDeserialize, TypeRegistry, std_traits::ReflectDefault};
+use glam::{DMat4, DQuat, DVec3, Vec2, Vec3};
+use serde::Deserialize;
 
 use crate::{AssetPath, Options, Range, Required, Scene, Schema, Target, load_str};
 
@@ -41,6 +42,57 @@ components! {
     Diffuse {
         #[reflect(@Range::closed(0.0, 1.0))]
         albedo: Vec3,
+        albedo_texture: Option<TextureMap>,
+    }
+    Principled {
+        #[reflect(@Range::closed(0.0, 1.0))]
+        base_color: Vec3,
+        base_color_texture: Option<TextureMap>,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        metallic: f32,
+        metallic_texture: Option<TextureMap>,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        roughness: f32,
+        roughness_texture: Option<TextureMap>,
+        #[reflect(@Range::closed(1.0, 4.0))]
+        ior: f32,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        specular: f32,
+        specular_texture: Option<TextureMap>,
+        #[reflect(@Range::at_least(0.0))]
+        specular_color: Vec3,
+        specular_color_texture: Option<TextureMap>,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        transmission: f32,
+        transmission_texture: Option<TextureMap>,
+        #[reflect(@Range::at_least(0.0))]
+        thickness: f32,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        attenuation_color: Vec3,
+        #[reflect(@Range::above(0.0))]
+        attenuation_distance: Option<f32>,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        clearcoat: f32,
+        clearcoat_texture: Option<TextureMap>,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        clearcoat_roughness: f32,
+        clearcoat_roughness_texture: Option<TextureMap>,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        sheen: Vec3,
+        sheen_texture: Option<TextureMap>,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        sheen_roughness: f32,
+        sheen_roughness_texture: Option<TextureMap>,
+        #[reflect(@Range::at_least(0.0))]
+        emission: Vec3,
+        emission_texture: Option<TextureMap>,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        alpha: f32,
+        alpha_texture: Option<TextureMap>,
+        #[reflect(@Range::closed(0.0, 1.0))]
+        alpha_cutoff: Option<f32>,
+        normal_texture: Option<TextureMap>,
+        normal_scale: f32,
     }
     Conductor {
         #[reflect(@Range::closed(0.0, 1.0))]
@@ -78,6 +130,47 @@ components! {
         #[reflect(@Range::closed(0.01, 179.0))]
         fov: f32,
     }
+}
+
+#[derive(Reflect, Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default)]
+#[reflect(Deserialize)]
+pub(super) struct TextureMap {
+    pub(super) file: AssetPath,
+    pub(super) image: Option<u32>,
+    pub(super) uv_set: u32,
+    pub(super) wrap_u: Wrap,
+    pub(super) wrap_v: Wrap,
+    pub(super) filter: Filter,
+    pub(super) translate: Vec2,
+    pub(super) rotate: f32,
+    pub(super) scale: Option<Vec2>,
+    pub(super) channel: Channel,
+    pub(super) factor: Option<Vec3>,
+}
+
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub(super) enum Wrap {
+    #[default]
+    Repeat,
+    Mirror,
+    Clamp,
+}
+
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub(super) enum Filter {
+    #[default]
+    Linear,
+    Nearest,
+}
+
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub(super) enum Channel {
+    #[default]
+    R,
+    G,
+    B,
+    A,
 }
 
 /// `DistantLight` is missing, so that there is a component to miss.
