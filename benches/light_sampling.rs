@@ -63,6 +63,7 @@ fn scene(triangles: u32, points: u32) -> Scene {
     let mut lights = vec![LightSource::Area {
         instance: 1,
         radiance: Rgb::splat(100.0),
+        texture: None,
         two_sided: false,
     }];
     lights.extend((0..points).map(|i| LightSource::Point {

@@ -67,17 +67,17 @@ fn fused(world: &World) -> Film {
     let settings = world.resource::<RenderSettings>();
     let filter = FilterSampler::new(settings.filter, settings.filter_radius);
     let (methods, seed, width) = (&settings.methods, settings.seed, u64::from(settings.resolution.x));
-    let count = film.pixel_count();
+    let (count, sequences) = (film.pixel_count(), film.layout().sequences());
     film.spans_mut(0..count, 256).into_par_iter().for_each(|mut span| {
         for local in 0..span.len() {
             let pixel = span.pixel_of(local);
             let domain = u64::from(pixel.y) * width + u64::from(pixel.x);
             for sample in 0..SAMPLES {
-                let lens = SampleStream::new(seed, CAMERA, domain, sample);
+                let lens = SampleStream::dealt(seed, CAMERA, domain, sample, sequences);
                 let position =
                     Vec2::new(pixel.x as f32 + 0.5, pixel.y as f32 + 0.5) + filter.sample(lens.draw_2d(0, 0));
                 let mut ray = camera.ray(position, 0.0);
-                let mut path = Path::from_eye(0, SampleStream::new(seed, PATH, domain, sample));
+                let mut path = Path::from_eye(0, SampleStream::dealt(seed, PATH, domain, sample, sequences));
                 let mut layers = [[0.0_f32; 3]; 5];
                 let (mut alpha, mut aux) = (0.0, [0.0; 7]);
                 let mut add = |layer: transport::Layer, radiance: radiometry::Rgb| {
@@ -104,7 +104,7 @@ fn fused(world: &World) -> Film {
                         None => break,
                     }
                 }
-                let _ = span.add_sample(local, &layers, alpha, &aux);
+                let _ = span.add_sample(local, sample, &layers, alpha, &aux);
             }
         }
     });

@@ -73,6 +73,10 @@ pub(crate) struct RenderArgs {
     /// Samples a pixel, in place of the scene's
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_777_216))]
     pub(crate) samples: Option<u32>,
+    /// Stop after the first pass with an estimated relative error of the image below this, 2% or 0.02: the root of the
+    /// relMSE that `compare` would find. Samples are unbounded then, but for --samples
+    #[arg(long, value_name = "ERROR", value_parser = parse::relative_error)]
+    pub(crate) until: Option<f64>,
     /// Stop after the first pass that ends later than this: 90, 30s, 2m, 1h, 500ms
     #[arg(long, value_name = "TIME", value_parser = parse::duration)]
     pub(crate) time_limit: Option<Duration>,

@@ -59,6 +59,18 @@ pub(crate) fn duration(text: &str) -> Result<Duration, String> {
     }
 }
 
+/// A relative error: `2%`, `0.02`; above 0 and below 1.
+pub(crate) fn relative_error(text: &str) -> Result<f64, String> {
+    let (number, scale) = match text.strip_suffix('%') {
+        Some(number) => (number, 0.01),
+        None => (text, 1.0),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(number) if number * scale > 0.0 && number * scale < 1.0 => Ok(number * scale),
+        _ => Err("give an error above 0 and below 100 %, such as 2% or 0.02".into()),
+    }
+}
+
 /// Width and height in pixels: `640x480`.
 pub(crate) fn resolution(text: &str) -> Result<[u32; 2], String> {
     let (width, height) = text

@@ -178,6 +178,9 @@ fn line(reading: &ProgressReading, left: Option<Duration>) -> String {
 }
 
 fn amount(reading: &ProgressReading, left: Option<Duration>) -> String {
+    if !reading.note.is_empty() {
+        return format!("{} {}, {}", reading.done, reading.unit, reading.note);
+    }
     if reading.total == 0 {
         return String::new();
     }
@@ -200,6 +203,7 @@ mod tests {
             done: 16,
             total: 64,
             unit: "waves",
+            note: String::new(),
         };
         assert_eq!(line(&reading, None), "rendering 16/64 waves, 25 %");
         let left = Some(Duration::from_secs(75));
@@ -216,6 +220,7 @@ mod tests {
             done,
             total: 100,
             unit: "waves",
+            note: String::new(),
         };
         view.look(&reading(50), &Display::Silent);
         assert_eq!(view.time_left(&reading(50)), None);

@@ -75,6 +75,7 @@ pub(crate) fn scene_request(scene: &SceneArgs) -> RenderRequest {
 pub(crate) fn render_request(scene: &SceneArgs, render: &RenderArgs, outputs: Vec<PathBuf>) -> RenderRequest {
     RenderRequest {
         samples: render.samples,
+        until: render.until,
         seed: render.seed,
         resolution: render.resolution.map(Into::into),
         crop: render.crop,

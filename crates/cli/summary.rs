@@ -3,7 +3,8 @@
 use crate::terminal::say;
 use bevy_app::App;
 use pipeline_core::{Counters, RenderClock};
-use pipeline_data::RenderSettings;
+use pipeline_data::{FilmSums, RenderSettings};
+use pipeline_stages::image::EstimatedError;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -33,21 +34,25 @@ pub(crate) fn tell_result(app: &App, elapsed: Duration, written: &[PathBuf]) {
         Some(samples) => say(&format!("{samples} samples a pixel in {time}")),
         None => say(&format!("done in {time}")),
     }
+    if let Some(EstimatedError(error)) = app.world().get_resource() {
+        say(&format!("estimated relative error {:.2} %", 100.0 * error));
+    }
     for path in written {
         say(&format!("wrote {}", path.display()));
     }
 }
 
-/// Samples a pixel, earlier runs of a resumed render included; a fraction in the middle of a pass.
+/// Samples a pixel, earlier runs of a resumed render included: of the pixel that has the fewest, and how many it wants.
 fn samples_done(app: &App) -> Option<String> {
-    let wanted = app.world().get_resource::<RenderSettings>()?.samples;
-    let clock = app.world().resource::<RenderClock>();
-    let share = clock.waves_done as f64 / clock.waves_total.max(1) as f64;
-    let samples = f64::from(wanted) * share;
-    Some(if samples.fract() == 0.0 {
+    let world = app.world();
+    let wanted = world.get_resource::<RenderSettings>()?.samples;
+    let film = &world.get_resource::<FilmSums>()?.0;
+    let samples = (0..film.pixel_count()).map(|pixel| film.sample_count(pixel)).min()?;
+    let clock = world.resource::<RenderClock>();
+    Some(if clock.waves_done >= clock.waves_total {
         format!("{samples}")
     } else {
-        format!("{samples:.2} of {wanted}")
+        format!("{samples} of {wanted}")
     })
 }
 

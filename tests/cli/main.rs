@@ -9,6 +9,7 @@ mod bad_scenes;
 mod command_line;
 mod comparing;
 mod disks;
+mod errors_of_pixels;
 mod interruption;
 mod layering;
 mod lens_and_shutter;

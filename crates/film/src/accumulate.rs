@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glam::UVec2;
 
+use crate::batch::PixelBatches;
 use crate::error::FilmError;
 use crate::fixed_sum::FixedSum;
 use crate::guard::{RejectedCounter, RejectedCounts};
@@ -28,6 +29,8 @@ pub struct Film {
     pub(crate) sums: Vec<FixedSum>,
     /// One count a pixel, in tile order.
     pub(crate) samples: Vec<u32>,
+    /// For the variance, one entry a pixel in tile order; empty without it.
+    pub(crate) batches: Vec<PixelBatches>,
     pub(crate) rejected: RejectedCounter,
 }
 
@@ -37,8 +40,9 @@ pub struct Film {
 #[must_use]
 pub fn memory_bytes(window: &FilmWindow, layout: &ChannelLayout) -> u64 {
     let sums = layout.channel_count() * size_of::<FixedSum>() + size_of::<u32>();
-    let resolved = (layout.channel_count() + 3) * size_of::<f32>();
-    window.pixel_count() as u64 * (sums + resolved) as u64
+    let batches = layout.batch_sets() * size_of::<PixelBatches>();
+    let resolved = (layout.channel_count() + 3 + 3 * layout.batch_sets()) * size_of::<f32>();
+    window.pixel_count() as u64 * (sums + batches + resolved) as u64
 }
 
 impl Film {
@@ -62,12 +66,15 @@ impl Film {
         };
         let sums = zeroed(pixels.checked_mul(layout.channel_count()), FixedSum::ZERO).ok_or_else(out_of_memory)?;
         let samples = zeroed(Some(pixels), 0).ok_or_else(out_of_memory)?;
+        let batches = pixels.checked_mul(layout.batch_sets());
+        let batches = zeroed(batches, PixelBatches::default()).ok_or_else(out_of_memory)?;
         Ok(Self {
             window,
             layout,
             order: TileOrder::new(window.size(), tile_size),
             sums,
             samples,
+            batches,
             rejected: RejectedCounter::default(),
         })
     }
@@ -135,6 +142,10 @@ impl Film {
         let channels = self.layout.channel_count();
         let sums = &mut self.sums[range.start * channels..range.end * channels];
         let samples = &mut self.samples[range.clone()];
+        let mut batches = match self.layout.variance {
+            true => self.batches[range.clone()].chunks_mut(span_len),
+            false => [].chunks_mut(span_len),
+        };
         sums.chunks_mut(span_len * channels)
             .zip(samples.chunks_mut(span_len))
             .enumerate()
@@ -142,12 +153,11 @@ impl Film {
                 start: range.start + index * span_len,
                 order: self.order,
                 window: &self.window,
-                layout: &self.layout,
                 alpha_offset: self.layout.alpha_offset(),
-                variance_offset: self.layout.variance_offset(),
                 channels,
                 sums,
                 samples,
+                batches: batches.next().unwrap_or_default(),
                 rejected: &self.rejected,
             })
             .collect()
@@ -155,7 +165,7 @@ impl Film {
 
     /// Adds all samples of another film; the same bits as if they had been added here.
     ///
-    /// The films may differ in tile size.
+    /// The films may differ in tile size. Their samples are to be different ones, together 0 .. n of each pixel.
     ///
     /// # Errors
     ///
@@ -173,6 +183,12 @@ impl Film {
             let sums = &mut self.sums[to * channels..][..channels];
             for (sum, term) in sums.iter_mut().zip(&other.sums[from * channels..][..channels]) {
                 sum.merge(*term);
+            }
+            if self.layout.variance {
+                let sums = self.batches[to].as_flattened_mut();
+                for (sum, term) in sums.iter_mut().zip(other.batches[from].as_flattened()) {
+                    sum.merge(*term);
+                }
             }
         }
         self.rejected.add(other.rejected());

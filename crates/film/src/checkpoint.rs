@@ -5,12 +5,12 @@
 //! | bytes | what |
 //! |---|---|
 //! | 8 | `PIPEFILM` |
-//! | 4 | version, 1 |
+//! | 4 | version, 2 |
 //! | 32 | key: a hash of whatever makes two renders the same |
 //! | 24 | resolution, first pixel and end of the crop, as pairs of u32 |
 //! | 4 + n | length and text of the channel list |
 //! | 24 | dropped samples: not a number, negative, infinite |
-//! | (4 + 16 c) p | per pixel in *raster* order: sample count, then c sums of 128 bits |
+//! | (4 + 16 c + 8 b) p | per pixel in *raster* order: sample count, c sums of 128 bits, b sums of batches of 64 bits |
 //! | 8 | checksum of everything before |
 //!
 //! Raster order, so that a render resumed with other tiles continues with the same bits.
@@ -20,6 +20,7 @@ use std::io::{self, Read, Write};
 use glam::UVec2;
 
 use crate::accumulate::Film;
+use crate::batch::{BatchSum, PixelBatches};
 use crate::error::FilmError;
 use crate::fixed_sum::FixedSum;
 use crate::guard::RejectedCounts;
@@ -27,7 +28,7 @@ use crate::layout::ChannelLayout;
 use crate::window::FilmWindow;
 
 const MAGIC: [u8; 8] = *b"PIPEFILM";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Why a checkpoint cannot be continued.
 #[derive(Debug, thiserror::Error)]
@@ -108,18 +109,44 @@ impl Film {
         put(&(layout.len() as u32).to_le_bytes())?;
         put(&layout)?;
         put(&counts_bytes(self.rejected()))?;
-        let channels = self.layout().channel_count();
-        let mut pixel = Vec::with_capacity(pixel_bytes(channels));
+        let mut pixel = Vec::with_capacity(pixel_bytes(self.layout()));
         for storage in self.raster() {
             pixel.clear();
-            pixel.extend_from_slice(&self.samples[storage].to_le_bytes());
-            for sum in &self.sums[storage * channels..][..channels] {
-                pixel.extend_from_slice(&sum.to_le_bytes());
-            }
+            self.put_pixel(storage, &mut pixel);
             put(&pixel)?;
         }
         let value = checksum.0;
         writer.write_all(&value.to_le_bytes())
+    }
+
+    fn put_pixel(&self, storage: usize, bytes: &mut Vec<u8>) {
+        let channels = self.layout().channel_count();
+        bytes.extend_from_slice(&self.samples[storage].to_le_bytes());
+        for sum in &self.sums[storage * channels..][..channels] {
+            bytes.extend_from_slice(&sum.to_le_bytes());
+        }
+        for sum in self.batches.get(storage).iter().flat_map(|b| b.as_flattened()) {
+            bytes.extend_from_slice(&sum.to_le_bytes());
+        }
+    }
+
+    fn take_pixel(&mut self, storage: usize, bytes: &[u8]) {
+        let channels = self.layout().channel_count();
+        let (count, rest) = bytes.split_at(4);
+        let (sums, batches) = rest.split_at(16 * channels);
+        self.samples[storage] = u32_at(count, 0);
+        let targets = &mut self.sums[storage * channels..][..channels];
+        for (target, bytes) in targets.iter_mut().zip(sums.as_chunks::<16>().0) {
+            *target = FixedSum::from_le_bytes(*bytes);
+        }
+        let targets = self
+            .batches
+            .get_mut(storage)
+            .into_iter()
+            .flat_map(|b| b.as_flattened_mut());
+        for (target, bytes) in targets.zip(batches.as_chunks::<8>().0) {
+            *target = BatchSum::from_le_bytes(*bytes);
+        }
     }
 
     /// Restores a film that [`Film::save`] wrote.
@@ -148,16 +175,10 @@ impl Film {
         let rejected = source.counts()?;
         let mut film = Self::new(window, layout, tile_size)?;
         film.rejected.add(rejected);
-        let channels = film.layout().channel_count();
-        let mut pixel = vec![0; pixel_bytes(channels)];
+        let mut pixel = vec![0; pixel_bytes(film.layout())];
         for storage in film.raster() {
             source.fill(&mut pixel)?;
-            let (count, sums) = pixel.split_at(4);
-            film.samples[storage] = u32_at(count, 0);
-            let targets = &mut film.sums[storage * channels..][..channels];
-            for (target, bytes) in targets.iter_mut().zip(sums.as_chunks::<16>().0) {
-                *target = FixedSum::from_le_bytes(*bytes);
-            }
+            film.take_pixel(storage, &pixel);
         }
         let expected = source.checksum.0;
         let found = source.array::<8>()?;
@@ -256,8 +277,8 @@ impl Checksum {
     }
 }
 
-fn pixel_bytes(channels: usize) -> usize {
-    4 + 16 * channels
+fn pixel_bytes(layout: &ChannelLayout) -> usize {
+    4 + 16 * layout.channel_count() + layout.batch_sets() * size_of::<PixelBatches>()
 }
 
 fn u32_at(bytes: &[u8], index: usize) -> u32 {

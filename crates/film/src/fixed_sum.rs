@@ -6,9 +6,6 @@ const FRACTION_BITS: i32 = 64;
 /// Exclusive upper bound on the magnitude of a single term, 2^40.
 pub const MAX_MAGNITUDE: f32 = 1_099_511_627_776.0;
 
-/// Largest square that [`FixedSum::add_square`] adds, 2^40.
-const MAX_SQUARE: f64 = 1_099_511_627_776.0;
-
 /// An exact sum: a 128-bit integer in units of 2⁻⁶⁴.
 ///
 /// Floating-point addition is not associative, so a sum over samples would depend on how they were
@@ -37,17 +34,6 @@ impl FixedSum {
     pub fn add(&mut self, term: f32) {
         debug_assert!(term.abs() < MAX_MAGNITUDE, "term {term} is not below 2^40");
         self.0 = self.0.wrapping_add(units_from_f32(term));
-    }
-
-    /// Adds the square of `root`, cut off at 2^40 (that is, for roots above 2^20), and truncated to
-    /// the grid.
-    ///
-    /// For second moments: the cut-off keeps one absurd sample from wrapping the sum.
-    #[inline]
-    pub fn add_square(&mut self, root: f32) {
-        let square = (f64::from(root) * f64::from(root)).min(MAX_SQUARE);
-        let units = (square * 18_446_744_073_709_551_616.0) as i128;
-        self.0 = self.0.wrapping_add(units);
     }
 
     /// Adds another sum: the same bits as adding its terms one by one.
@@ -157,15 +143,5 @@ mod tests {
         assert_eq!(sum_of(&[-unit * 1.5]), FixedSum(-2));
         assert_eq!(sum_of(&[f32::MIN_POSITIVE, 1e-45, 0.0, -0.0]), FixedSum(0));
         assert_eq!(sum_of(&[1.0]), FixedSum(1 << 64));
-    }
-
-    #[test]
-    fn squares_are_cut_off() {
-        let mut sum = FixedSum::ZERO;
-        sum.add_square(3.0);
-        sum.add_square(-4.0);
-        assert_eq!(sum.to_f64(), 25.0);
-        sum.add_square(1e12);
-        assert_eq!(sum.to_f64(), 25.0 + MAX_SQUARE);
     }
 }

@@ -1,5 +1,6 @@
 //! Which channels a film accumulates, and what they are called in files.
 
+use crate::batch::{BATCH_RUN, BATCHES};
 use crate::error::FilmError;
 
 /// Longest name of a layer or group, so that a channel name stays within the 31 bytes that every
@@ -62,15 +63,15 @@ impl AuxGroup {
 
 /// The channels of a film.
 ///
-/// Per pixel: three for every radiance layer, one for alpha, those of the groups, and three for the
-/// variance if it is wanted; 16 bytes each.
+/// Per pixel: three for every radiance layer, one for alpha, and those of the groups, 16 bytes each; for the
+/// variance, if it is wanted, the sums of [`BATCHES`](crate::BATCHES) batches, 192 bytes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelLayout {
     /// Names of the RGB radiance layers, W·m⁻²·sr⁻¹. Their sum, in this order, is the beauty image.
     pub layers: Vec<String>,
     /// Groups of auxiliary channels; averaged over the samples like everything else.
     pub aux: Vec<AuxGroup>,
-    /// Whether second moments are kept, for the variance of the mean of each beauty channel.
+    /// Whether sums of batches are kept, for the variance of the mean of each beauty channel.
     pub variance: bool,
 }
 
@@ -96,20 +97,27 @@ impl ChannelLayout {
         self.aux.iter().map(|group| group.components.len()).sum()
     }
 
-    /// Returns the number of sums that a pixel holds.
+    /// Returns the number of channels that a pixel holds sums of; the variance comes from sums of another kind.
     #[must_use]
     pub fn channel_count(&self) -> usize {
-        self.variance_offset() + if self.variance { 3 } else { 0 }
+        self.alpha_offset() + 1 + self.aux_count()
+    }
+
+    /// Returns how many independently scrambled sequences the samples of a pixel have to be dealt to, and how many at a
+    /// time go to one.
+    #[must_use]
+    pub fn sequences(&self) -> (u32, u32) {
+        (if self.variance { BATCHES } else { 1 }, BATCH_RUN)
+    }
+
+    /// Sets of batches that a pixel holds.
+    pub(crate) fn batch_sets(&self) -> usize {
+        usize::from(self.variance)
     }
 
     /// Position of alpha among the sums of a pixel; the layers come before it.
     pub(crate) fn alpha_offset(&self) -> usize {
         3 * self.layers.len()
-    }
-
-    /// Position of the first second moment; the auxiliary channels come before it.
-    pub(crate) fn variance_offset(&self) -> usize {
-        self.alpha_offset() + 1 + self.aux_count()
     }
 
     /// Returns the channel names of the resolved image, in the order in which it lists them:
@@ -175,9 +183,9 @@ mod tests {
         let layout = ChannelLayout::standard();
         layout.validate().unwrap();
         assert_eq!(layout.aux_count(), 7);
-        assert_eq!(layout.channel_count(), 18 + 1 + 7 + 3);
+        assert_eq!(layout.channel_count(), 18 + 1 + 7);
         let names = layout.image_channel_names();
-        assert_eq!(names.len(), 3 + layout.channel_count());
+        assert_eq!(names.len(), 3 + layout.channel_count() + 3);
         for name in ["R", "A", "direct.R", "volume.B", "normal.X", "depth.Z", "variance.G"] {
             assert!(names.iter().any(|n| n == name), "{name} is missing");
         }

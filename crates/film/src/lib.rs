@@ -70,6 +70,7 @@
 
 mod accumulate;
 mod atomic;
+mod batch;
 mod checkpoint;
 mod error;
 mod exr_file;
@@ -89,6 +90,7 @@ mod window;
 
 pub use accumulate::{Film, memory_bytes};
 pub use atomic::{WriteError, atomic_write};
+pub use batch::{BATCH_RUN, BATCHES};
 pub use checkpoint::CheckpointError;
 pub use error::FilmError;
 pub use exr_file::{ExrWriteError, Metadata, write_exr};

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::accumulate::Film;
-use crate::fixed_sum::FixedSum;
+use crate::batch::{BATCH_RUN, BATCHES, Estimate, estimate};
 use crate::pixels::{Channel, Image};
 
 impl Film {
@@ -12,9 +12,9 @@ impl Film {
     /// - returns one `f32` channel for each of [`image_channel_names`], rows from the top
     ///   over the crop. Layers, alpha and groups: mean over the pixel's samples. `R G B`: the sum
     ///   of the resolved layers in `f32`, in layer order, so that the layers in a file add up to its
-    ///   beauty image exactly. `variance`: unbiased estimate of the variance *of the pixel mean*,
-    ///   Σ(x − x̄)² / (n(n − 1)), assuming independent samples; 0 with fewer than two. A pixel without
-    ///   samples is 0 everywhere.
+    ///   beauty image exactly. `variance`: estimate of the variance *of the pixel mean* from the spread of its
+    ///   [`BATCHES`](crate::BATCHES), unbiased if batches are independent and equally long; 0 with fewer than two
+    ///   samples. A pixel without samples is 0 everywhere.
     ///
     /// Cost: one pass a channel, in parallel on the current rayon pool. The film can go on filling.
     ///
@@ -22,8 +22,7 @@ impl Film {
     #[must_use]
     pub fn resolve(&self) -> Image {
         let alpha = self.layout().alpha_offset();
-        let moments = self.layout().variance_offset();
-        let mut means: Vec<Vec<f32>> = (0..moments)
+        let mut means: Vec<Vec<f32>> = (0..self.layout().channel_count())
             .into_par_iter()
             .map(|channel| self.mean_of(channel))
             .collect();
@@ -64,25 +63,45 @@ impl Film {
     }
 
     fn variance_of(&self, component: usize) -> Vec<f32> {
-        let channels = self.layout().channel_count();
-        let alpha = self.layout().alpha_offset();
-        let moment = self.layout().variance_offset() + component;
-        let variance = |storage: usize| {
-            let count = f64::from(self.samples[storage]);
-            if count < 2.0 {
-                return 0.0;
-            }
-            let sums = &self.sums[storage * channels..][..channels];
-            let mut first = FixedSum::ZERO;
-            sums[..alpha]
-                .iter()
-                .skip(component)
-                .step_by(3)
-                .for_each(|&sum| first.merge(sum));
-            let first = first.to_f64();
-            let spread = sums[moment].to_f64() - first * first / count;
-            (spread.max(0.0) / (count * (count - 1.0))) as f32
-        };
+        let variance = |storage: usize| self.estimate(storage, component).variance as f32;
         self.raster().map(variance).collect()
+    }
+
+    /// Mean and variance of a beauty channel, from the batches; the film has to have them.
+    pub(crate) fn estimate(&self, storage: usize, component: usize) -> Estimate {
+        estimate(&self.batches[storage], component, self.samples[storage])
+    }
+
+    /// Estimates the relative error of the image: the root of the mean, over pixels and channels, of
+    /// `variance / (mean² + (0.1 · mean of the image)²)`, which is the relMSE that a comparison with the true image would
+    /// find.
+    ///
+    /// - returns nothing without the variance, and before every pixel has a sample in each batch.
+    #[must_use]
+    pub fn relative_error(&self) -> Option<f64> {
+        let pixels = self.pixel_count();
+        let fewest = self.samples.iter().copied().min()?;
+        if !self.layout().variance || fewest < BATCHES * BATCH_RUN {
+            return None;
+        }
+        let each = |component: usize| -> Vec<Estimate> {
+            let estimate = |storage: usize| self.estimate(storage, component);
+            (0..pixels).into_par_iter().map(estimate).collect()
+        };
+        let channels = [each(0), each(1), each(2)];
+        // In a fixed order, so that where a render stops does not depend on threads.
+        let sum: f64 = channels
+            .iter()
+            .map(|pixels| {
+                let mean = pixels.iter().map(|found| found.mean).sum::<f64>() / pixels.len() as f64;
+                let floor = (0.1 * mean) * (0.1 * mean);
+                let error = |found: &Estimate| match found.mean * found.mean + floor {
+                    scale if scale > 0.0 => found.variance / scale,
+                    _ => 0.0,
+                };
+                pixels.iter().map(error).sum::<f64>()
+            })
+            .sum();
+        Some((sum / (3 * pixels) as f64).sqrt())
     }
 }

@@ -2,9 +2,9 @@
 
 use glam::UVec2;
 
+use crate::batch::{PixelBatches, batch_of};
 use crate::fixed_sum::FixedSum;
 use crate::guard::{Rejected, RejectedCounter, check_sample};
-use crate::layout::ChannelLayout;
 use crate::window::{FilmWindow, TileOrder};
 
 /// A contiguous run of pixels of a film, for one thread to fill.
@@ -13,12 +13,12 @@ pub struct FilmSpan<'film> {
     pub(crate) start: usize,
     pub(crate) order: TileOrder,
     pub(crate) window: &'film FilmWindow,
-    pub(crate) layout: &'film ChannelLayout,
     pub(crate) alpha_offset: usize,
-    pub(crate) variance_offset: usize,
     pub(crate) channels: usize,
     pub(crate) sums: &'film mut [FixedSum],
     pub(crate) samples: &'film mut [u32],
+    /// Empty without the variance.
+    pub(crate) batches: &'film mut [PixelBatches],
     pub(crate) rejected: &'film RejectedCounter,
 }
 
@@ -55,6 +55,8 @@ impl FilmSpan<'_> {
     /// Adds one sample to one pixel.
     ///
     /// - `local`: index within the span, below [`FilmSpan::len`].
+    /// - `number`: which of the pixel's samples this is, from 0. It decides the batch, see [`BATCHES`](crate::BATCHES); in the end the
+    ///   pixel has to have all samples below its count.
     /// - `radiance`: one linear RGB value a layer, W·m⁻²·sr⁻¹, in layout order, not negative.
     /// - `alpha`: coverage, 0 ..= 1.
     /// - `aux`: the values of all groups, one after another; may be negative.
@@ -71,13 +73,16 @@ impl FilmSpan<'_> {
     ///
     /// Cost: a shift and an addition for each value; black layers are skipped. No allocation.
     #[inline]
-    pub fn add_sample(&mut self, local: usize, radiance: &[[f32; 3]], alpha: f32, aux: &[f32]) -> Result<(), Rejected> {
+    pub fn add_sample(
+        &mut self,
+        local: usize,
+        number: u32,
+        radiance: &[[f32; 3]],
+        alpha: f32,
+        aux: &[f32],
+    ) -> Result<(), Rejected> {
         let lengths = (3 * radiance.len(), self.alpha_offset + 1 + aux.len());
-        assert_eq!(
-            lengths,
-            (self.alpha_offset, self.variance_offset),
-            "sample and layout differ"
-        );
+        assert_eq!(lengths, (self.alpha_offset, self.channels), "sample and layout differ");
         self.samples[local] = self.samples[local].wrapping_add(1);
         check_sample(radiance, alpha, aux).inspect_err(|&reason| self.rejected.count(reason))?;
         let sums = &mut self.sums[local * self.channels..][..self.channels];
@@ -88,11 +93,11 @@ impl FilmSpan<'_> {
             }
         }
         rest[0].add(alpha);
-        let (aux_sums, moments) = rest[1..].split_at_mut(aux.len());
-        add_values(aux_sums, aux);
-        if self.layout.variance {
-            for (component, moment) in moments.iter_mut().enumerate() {
-                moment.add_square(radiance.iter().map(|layer| layer[component]).sum());
+        add_values(&mut rest[1..], aux);
+        if let Some(batches) = self.batches.get_mut(local) {
+            let batch = &mut batches[batch_of(number)];
+            for (component, sum) in batch.iter_mut().enumerate() {
+                sum.add(radiance.iter().map(|layer| layer[component]).sum());
             }
         }
         Ok(())

@@ -22,6 +22,8 @@ pub struct RenderClock {
     pub waves_per_pass: u64,
     /// Stop before the first pass that would start later than this after the start of loading.
     pub time_limit: Option<Duration>,
+    /// Set by a stage at the end of a pass once the image is as good as was asked for: the render is complete then.
+    pub is_converged: bool,
     /// Load and prepare only.
     pub check_only: bool,
     /// Refuse a scene that loading or preparing warns about.
@@ -31,7 +33,7 @@ pub struct RenderClock {
 /// How a render ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Every sample was taken, or the time limit came; the files are written.
+    /// Every sample was taken, a stage was content, or the time limit came; the files are written.
     Finished,
     /// Somebody asked to stop; what there was is written.
     Interrupted,
@@ -80,13 +82,18 @@ pub fn render(app: &mut App) -> Outcome {
         let out_of_time = done >= first_stop
             && done.is_multiple_of(per_pass)
             && limit.is_some_and(|limit| started.elapsed() >= limit);
+        if clock.is_converged {
+            world.resource_mut::<RenderClock>().waves_total = done;
+            break;
+        }
         if done >= total || out_of_time {
             break;
         }
         world.run_schedule(RenderPass);
         world.resource_mut::<RenderClock>().waves_done += 1;
     }
-    let interrupted = world.resource::<RenderClock>().waves_done < total && cancellation.is_requested();
+    let clock = world.resource::<RenderClock>();
+    let interrupted = clock.waves_done < clock.waves_total && cancellation.is_requested();
     progress.start("writing", "", 0);
     world.run_schedule(Finish);
     match (world.resource::<Report>().failed(), interrupted) {

@@ -18,6 +18,8 @@ pub struct ProgressReading {
     pub total: u64,
     /// What a unit is: "photons", "samples".
     pub unit: &'static str,
+    /// How far it is in words, where the end is not a number of units; empty elsewhere.
+    pub note: String,
 }
 
 impl Progress {
@@ -28,7 +30,13 @@ impl Progress {
             done: 0,
             total,
             unit,
+            note: String::new(),
         };
+    }
+
+    /// Says how far it is in words, where the end is not a number of units.
+    pub fn set_note(&self, note: &str) {
+        self.lock().note = note.into();
     }
 
     /// Says that `done` units of the current stage are finished.

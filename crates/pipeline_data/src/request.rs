@@ -11,6 +11,9 @@ pub struct RenderRequest {
     pub options: scene_format::Options,
     /// Samples a pixel, in place of the scene's.
     pub samples: Option<u32>,
+    /// Stop once the estimated relative error of the image is below this; samples are without a bound then, but for
+    /// `samples`.
+    pub until: Option<f64>,
     /// Seed, in place of the scene's.
     pub seed: Option<u64>,
     /// Resolution in pixels, in place of the scene's.
@@ -35,6 +38,7 @@ impl Default for RenderRequest {
             scene: PathBuf::new(),
             options: scene_format::Options::default(),
             samples: None,
+            until: None,
             seed: None,
             resolution: None,
             crop: None,

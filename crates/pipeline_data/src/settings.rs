@@ -20,6 +20,8 @@ pub struct RenderSettings {
     pub filter: film::FilterKind,
     /// Its radius in pixels.
     pub filter_radius: f32,
+    /// Whether samples come in batches, for the variance of each pixel.
+    pub variance: bool,
     /// Exposure of the 8-bit output, in stops.
     pub exposure: f32,
     /// Tone curve of the 8-bit output.

@@ -21,27 +21,28 @@ pub struct FilmBatch {
     pub first_pixel: usize,
     /// Pixel of each slot, counted from `first_pixel`.
     pub pixel_of_slot: Vec<u32>,
+    /// Which sample of its pixel each slot is, from 0.
+    pub sample_of_slot: Vec<u32>,
     /// Place of each slot's ray on the film, in pixels from the top left corner.
     pub film_position: Vec<Vec2>,
 }
 
 impl FilmBatch {
-    /// The random numbers that a stage draws for the sample of a slot.
-    ///
-    /// - `index`: of the sample in its pixel, as the stream of its path says.
+    /// The random numbers that a stage draws for the sample of a slot. Whatever a camera ray needs draws from here, so that
+    /// batches of samples are independent in all of it.
     #[inline]
     #[must_use]
     pub fn sample_stream(
         &self,
         slot: usize,
-        index: u32,
         stage: StageKey,
         film: &film::Film,
         settings: &RenderSettings,
     ) -> SampleStream {
         let pixel = film.pixel_of(self.first_pixel + self.pixel_of_slot[slot] as usize);
         let domain = u64::from(pixel.y) * u64::from(settings.resolution.x) + u64::from(pixel.x);
-        SampleStream::new(settings.seed, stage, domain, index)
+        let sequences = film.layout().sequences();
+        SampleStream::dealt(settings.seed, stage, domain, self.sample_of_slot[slot], sequences)
     }
 }
 
@@ -151,9 +152,9 @@ impl FilmSums {
     /// Layers that the film has: all but `volume`, which nothing renders yet.
     pub const LAYERS: usize = 5;
 
-    /// Channels of the film.
+    /// Channels of the film, with or without the variance.
     #[must_use]
-    pub fn layout() -> ChannelLayout {
+    pub fn layout(variance: bool) -> ChannelLayout {
         ChannelLayout {
             layers: Layer::ALL[..Self::LAYERS]
                 .iter()
@@ -164,7 +165,7 @@ impl FilmSums {
                 AuxGroup::xyz("normal"),
                 AuxGroup::depth("depth"),
             ],
-            variance: false,
+            variance,
         }
     }
 }

@@ -58,6 +58,20 @@ impl SampleStream {
         Self { key, index }
     }
 
+    /// The stream of sample `number` in `domain`, whose samples are dealt to several sequences in turn, `run` at a time.
+    ///
+    /// Each is scrambled on its own and grows with the samples, so that their estimates are independent and their spread
+    /// tells the error of the mean. One sequence of all samples has less error where the integrand is smooth, which cannot
+    /// be told from inside.
+    #[inline]
+    #[must_use]
+    pub const fn dealt(seed: u64, stage: StageKey, domain: u64, number: u32, (sequences, run): (u32, u32)) -> Self {
+        let round = number / (run * sequences);
+        let sequence = (number / run) % sequences;
+        let key = domain.wrapping_mul(sequences as u64).wrapping_add(sequence as u64);
+        Self::new(seed, stage, key, round * run + number % run)
+    }
+
     /// The sample index.
     #[inline]
     #[must_use]
@@ -165,6 +179,18 @@ mod tests {
             a.draw_1d(0, 1),
         ] {
             assert_ne!(a.draw_1d(0, 0), b);
+        }
+    }
+
+    #[test]
+    fn dealt_samples_are_sequences_of_their_own() {
+        for number in 0..64 {
+            let (sequence, index) = (number / 4 % 8, number / 32 * 4 + number % 4);
+            let dealt = SampleStream::dealt(5, KEY, 3, number, (8, 4));
+            let own = SampleStream::new(5, KEY, 3 * 8 + u64::from(sequence), index);
+            assert_eq!(dealt.draw_2d(1, 2), own.draw_2d(1, 2));
+            let single = SampleStream::dealt(5, KEY, 3, number, (1, 4));
+            assert_eq!(single.draw_1d(0, 0), SampleStream::new(5, KEY, 3, number).draw_1d(0, 0));
         }
     }
 

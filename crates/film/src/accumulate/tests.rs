@@ -36,7 +36,7 @@ fn render(film: &mut Film, range: Range<u64>, span_len: usize) {
                 let radiance: [[f32; 3]; 6] =
                     std::array::from_fn(|l| std::array::from_fn(|c| value(key * 100 + (l * 3 + c) as u64)));
                 let aux: [f32; 7] = std::array::from_fn(|i| value(key * 100 + 50 + i as u64) - 8.0);
-                span.add_sample(local, &radiance, 0.5, &aux).unwrap();
+                span.add_sample(local, sample as u32, &radiance, 0.5, &aux).unwrap();
             }
         }
     });
@@ -93,7 +93,7 @@ fn pixels_land_where_they_belong() {
         for local in 0..span.len() {
             let pixel = span.pixel_of(local);
             let radiance = [[pixel.x as f32, pixel.y as f32, 1.0]];
-            span.add_sample(local, &radiance, 1.0, &[]).unwrap();
+            span.add_sample(local, 0, &radiance, 1.0, &[]).unwrap();
         }
     }
     let image = film.resolve();
@@ -117,10 +117,10 @@ fn bad_samples_count_but_add_nothing() {
     let span = &mut spans[0];
     let black = [0.0; 3];
     let bad = |value| [[1.0, 1.0, value], [0.0; 3]];
-    assert_eq!(span.add_sample(0, &[[4.0; 3], black], 1.0, &[2.0]), Ok(()));
-    assert_eq!(span.add_sample(0, &bad(f32::NAN), 1.0, &[2.0]), Err(Rejected::Nan));
-    assert_eq!(span.add_sample(0, &bad(-1.0), 1.0, &[2.0]), Err(Rejected::Negative));
-    let far = span.add_sample(0, &[black, black], 1.0, &[f32::INFINITY]);
+    assert_eq!(span.add_sample(0, 0, &[[4.0; 3], black], 1.0, &[2.0]), Ok(()));
+    assert_eq!(span.add_sample(0, 0, &bad(f32::NAN), 1.0, &[2.0]), Err(Rejected::Nan));
+    assert_eq!(span.add_sample(0, 0, &bad(-1.0), 1.0, &[2.0]), Err(Rejected::Negative));
+    let far = span.add_sample(0, 0, &[black, black], 1.0, &[f32::INFINITY]);
     assert_eq!(far, Err(Rejected::Infinite));
     assert_eq!(
         film.rejected(),
@@ -147,10 +147,13 @@ fn variance_is_that_of_the_mean() {
     let mut film = Film::new(FilmWindow::full(UVec2::new(2, 1)), layout, 8).unwrap();
     for (local, values) in [(0, [1.0, 2.0, 3.0, 6.0].as_slice()), (1, &[5.0])] {
         let mut spans = film.spans_mut(0..2, 2);
-        for &value in values {
-            spans[0]
-                .add_sample(local, &[[value, 1.0, 0.0], [1.0; 3]], 1.0, &[])
-                .unwrap();
+        for (batch, &value) in (0..).zip(values) {
+            // Each value is a batch.
+            for number in 0..4 {
+                spans[0]
+                    .add_sample(local, 4 * batch + number, &[[value, 1.0, 0.0], [1.0; 3]], 1.0, &[])
+                    .unwrap();
+            }
         }
     }
     let image = film.resolve();
@@ -164,7 +167,7 @@ fn variance_is_that_of_the_mean() {
 fn an_empty_film_is_black() {
     let image = film(16).resolve();
     assert!(image.channels.iter().all(|c| c.samples.iter().all(|&s| s == 0.0)));
-    let expected = 13 * 9 * (29 * 16 + 4 + 32 * 4);
+    let expected = 13 * 9 * (26 * 16 + 192 + 4 + 32 * 4);
     assert_eq!(memory_bytes(&window(), &ChannelLayout::standard()), expected);
 }
 

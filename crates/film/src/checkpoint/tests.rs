@@ -19,8 +19,8 @@ fn filled(tile_size: u32) -> Film {
         for local in 0..span.len() {
             let pixel = span.pixel_of(local).as_vec2();
             let radiance = [[pixel.x * 0.3, pixel.y * 0.7, 1e-9]; 6];
-            span.add_sample(local, &radiance, 1.0, &[pixel.x - 4.0; 7]).unwrap();
-            let _ = span.add_sample(local, &[[f32::NAN; 3]; 6], 1.0, &[0.0; 7]);
+            span.add_sample(local, 0, &radiance, 1.0, &[pixel.x - 4.0; 7]).unwrap();
+            let _ = span.add_sample(local, 1, &[[f32::NAN; 3]; 6], 1.0, &[0.0; 7]);
         }
     }
     film
@@ -74,8 +74,8 @@ fn each_disagreement_is_named() {
     let other_layout = Film::load(&mut source(), &KEY, window(), fewer, 4);
     assert!(matches!(other_layout, Err(CheckpointError::Layout)));
     let mut newer = bytes.clone();
-    newer[8] = 2;
-    assert!(matches!(load(&newer), Err(CheckpointError::Version { found: 2 })));
+    newer[8] = 3;
+    assert!(matches!(load(&newer), Err(CheckpointError::Version { found: 3 })));
     assert!(matches!(load(b"PNG and so on"), Err(CheckpointError::NotACheckpoint)));
     assert!(matches!(load(b""), Err(CheckpointError::Truncated)));
 }

@@ -3,7 +3,6 @@ use bevy_ecs::prelude::*;
 use glam::Vec2;
 use pipeline_core::{RenderClock, Report, record_items};
 use pipeline_data::{CameraFrame, FilmBatch, FilmSums, PathStream, RayStream, RenderSettings};
-use radiometry::SampleStream;
 use rayon::prelude::*;
 use transport::Path;
 
@@ -20,7 +19,7 @@ pub(super) fn plan_waves(
     };
     let size = settings.crop_max - settings.crop_min;
     let pixels = size.x as usize * size.y as usize;
-    // A power of two of samples keeps each pixel's share of a pass an aligned run of its sequence.
+    // A power of two of samples keeps each pixel's share of a pass an aligned run of its sequences.
     let fitting = (WAVE_PATHS / pixels.max(1)).clamp(1, BATCH_PATHS);
     let samples_per_pass = (1_u32 << fitting.ilog2()).min(settings.samples.max(1).next_power_of_two());
     let pixels_per_batch = (BATCH_PATHS / samples_per_pass as usize).max(1);
@@ -102,22 +101,21 @@ fn fill_batch(
 ) {
     batch.first_pixel = pixels.start;
     batch.pixel_of_slot.clear();
+    batch.sample_of_slot.clear();
     batch.film_position.clear();
     rays.0.clear();
     paths.0.clear();
     for storage in pixels.clone() {
         let pixel = film.pixel_of(storage);
-        let domain = u64::from(pixel.y) * u64::from(settings.resolution.x) + u64::from(pixel.x);
         for sample in film.sample_count(storage)..samples_end {
             let slot = batch.pixel_of_slot.len() as u32;
             let position = Vec2::new(pixel.x as f32 + 0.5, pixel.y as f32 + 0.5);
             batch.pixel_of_slot.push((storage - pixels.start) as u32);
+            batch.sample_of_slot.push(sample);
             batch.film_position.push(position);
             rays.0.push(camera.0.ray(position, 0.0));
-            paths.0.push(Path::from_eye(
-                slot,
-                SampleStream::new(settings.seed, PATH_STAGE, domain, sample),
-            ));
+            let stream = batch.sample_stream(slot as usize, PATH_STAGE, film, settings);
+            paths.0.push(Path::from_eye(slot, stream));
         }
     }
 }

@@ -2,12 +2,12 @@ use super::CAMERA_STAGE;
 use bevy_ecs::prelude::*;
 use film::FilterSampler;
 use pipeline_core::record_items;
-use pipeline_data::{CameraFrame, FilmBatch, FilmSums, PathStream, RayStream, RenderSettings};
+use pipeline_data::{CameraFrame, FilmBatch, FilmSums, RayStream, RenderSettings};
 use rayon::prelude::*;
 
 /// Moves each ray to a place of its pixel's filter, chosen in proportion to the filter.
 pub(super) fn sample_filter(
-    mut batches: Query<(&mut FilmBatch, &mut RayStream, &PathStream)>,
+    mut batches: Query<(&mut FilmBatch, &mut RayStream)>,
     film: Res<FilmSums>,
     settings: Res<RenderSettings>,
     camera: Res<CameraFrame>,
@@ -20,13 +20,13 @@ pub(super) fn sample_filter(
     let mut batches: Vec<_> = batches.iter_mut().collect();
     let paths = batches
         .par_iter_mut()
-        .map(|(batch, rays, paths)| {
-            for (slot, (ray, path)) in rays.0.iter_mut().zip(&paths.0).enumerate() {
-                let stream = batch.sample_stream(slot, path.stream.index(), CAMERA_STAGE, &film.0, &settings);
+        .map(|(batch, rays)| {
+            for (slot, ray) in rays.0.iter_mut().enumerate() {
+                let stream = batch.sample_stream(slot, CAMERA_STAGE, &film.0, &settings);
                 batch.film_position[slot] += filter.sample(stream.draw_2d(0, 0));
                 *ray = camera.0.ray(batch.film_position[slot], 0.0);
             }
-            paths.0.len()
+            rays.0.len()
         })
         .sum();
     record_items(paths);

@@ -81,10 +81,12 @@ fn add_batch(
     let (Some(batch), Some(first_hits)) = (batch.get::<FilmBatch>(), batch.get::<FirstHits>()) else {
         return 0;
     };
-    for ((radiance, pixel), hit) in layers.iter().zip(&batch.pixel_of_slot).zip(&first_hits.0) {
+    let places = batch.pixel_of_slot.iter().zip(&batch.sample_of_slot);
+    for ((radiance, (pixel, number)), hit) in layers.iter().zip(places).zip(&first_hits.0) {
         let (albedo, normal) = (hit.albedo, hit.normal);
         let aux = [albedo.r, albedo.g, albedo.b, normal.x, normal.y, normal.z, hit.depth];
-        if span.add_sample(*pixel as usize, radiance, hit.alpha, &aux).is_err() {
+        let added = span.add_sample(*pixel as usize, *number, radiance, hit.alpha, &aux);
+        if added.is_err() {
             counters.rejected.add(1);
         }
     }

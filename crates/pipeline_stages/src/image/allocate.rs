@@ -55,7 +55,7 @@ pub(super) fn allocate_film(
                     &mut BufReader::new(file),
                     &key,
                     window,
-                    FilmSums::layout(),
+                    FilmSums::layout(settings.variance),
                     request.tile_size,
                 ) {
                     Ok(film) => resumed = Some(film),
@@ -81,7 +81,10 @@ pub(super) fn allocate_film(
             }
         }
     }
-    match resumed.map_or_else(|| Film::new(window, FilmSums::layout(), request.tile_size), Ok) {
+    match resumed.map_or_else(
+        || Film::new(window, FilmSums::layout(settings.variance), request.tile_size),
+        Ok,
+    ) {
         Ok(film) => commands.insert_resource(FilmSums(film)),
         Err(error) => report.fail(format!("error[film]: {error}")),
     }

@@ -1,8 +1,8 @@
 //! The image: film sums, auxiliary channels, files and checkpoints.
 //!
 //! Scene: `Film: (resolution: …, exposure: …, tone_map: …)` on the render prim.
-//! Sets: `PrepareStages` (`allocate_film`), `Shade` (`record_first_hits`), `Accumulate` (`accumulate_batches`), `Resolve`
-//! (`resolve_film`), `Write` (`write_images`).
+//! Sets: `PrepareStages` (`allocate_film`), `Shade` (`record_first_hits`), `Accumulate` (`accumulate_batches`,
+//! `estimate_error`), `Resolve` (`resolve_film`), `Write` (`write_images`).
 //! Reads the contributions of every term. Writes the film and the files that the request names.
 //! Counters: `image/samples`, `image/rejected samples` (NaN, negative or infinite; dropped at this one guard).
 //!
@@ -12,9 +12,12 @@
 
 mod accumulate;
 mod allocate;
+mod converge;
 mod first_hits;
 mod resolve;
 mod write;
+
+pub use converge::EstimatedError;
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::schedule::{IntoScheduleConfigs, SystemSet};
@@ -46,7 +49,8 @@ impl Plugin for ImagePlugin {
         )
         .add_systems(
             RenderPass,
-            accumulate::accumulate_batches
+            (accumulate::accumulate_batches, converge::estimate_error)
+                .chain()
                 .in_set(RenderSystems::Accumulate)
                 .in_set(ImageSystems),
         )

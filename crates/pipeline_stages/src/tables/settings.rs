@@ -14,6 +14,9 @@ use scene_format::{Diagnostic, Scene};
 /// A film that would take more memory than this is refused: it is a slip of the pen, not a picture.
 const MOST_FILM_BYTES: u64 = 16 << 30;
 
+/// Samples of a pixel at most.
+const MOST_SAMPLES: u32 = 1 << 24;
+
 type RenderPrim<'a> = (&'a PrimIndex, &'a Render, Option<&'a Film>, Option<&'a LightTransport>);
 type CameraPrim<'a> = (
     &'a PrimIndex,
@@ -123,13 +126,18 @@ fn settings(
             specular_alpha: methods.specular_alpha,
             max_depth: render.max_depth.unwrap_or(u32::MAX),
         },
-        samples: request.samples.unwrap_or(render.samples),
+        samples: match (request.samples, request.until) {
+            (Some(samples), _) => samples,
+            (None, Some(_)) => MOST_SAMPLES,
+            (None, None) => render.samples,
+        },
         seed: request.seed.unwrap_or(render.seed),
         resolution,
         crop_min: UVec2::new(x0, y0),
         crop_max: UVec2::new(x1, y1),
         filter: film.filter.into(),
         filter_radius: film.filter_radius,
+        variance: film.variance,
         exposure: film.exposure,
         tone_map: film.tone_map.into(),
         render_prim: index.0,
@@ -150,6 +158,14 @@ fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest,
         crop_min: *crop_min,
         crop_max: *crop_max,
     };
+    if request.until.is_some() && !settings.variance {
+        let finding = Diagnostic::error(
+            "no-variance",
+            "`--until` needs the error of each pixel, which `Film.variance: false` leaves out",
+        )
+        .note("leave `variance` at its default");
+        findings.push_at(field_place(scene, settings.render_prim, "Film", &["variance"]), finding);
+    }
     if settings.samples == 0 {
         findings.push(Diagnostic::error(
             "out-of-range",
@@ -172,7 +188,7 @@ fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest,
         let note = "a crop is x0 y0 x1 y1 in pixels from the top left; the last two are one beyond its last pixel";
         findings.push(Diagnostic::error("bad-crop", message).note(note));
     } else {
-        let bytes = film::memory_bytes(&window, &FilmSums::layout());
+        let bytes = film::memory_bytes(&window, &FilmSums::layout(settings.variance));
         if bytes > MOST_FILM_BYTES {
             let message = format!(
                 "a film of {} × {} pixels takes {} GiB of memory; at most {} GiB are used",
