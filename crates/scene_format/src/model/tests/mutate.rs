@@ -7,7 +7,7 @@ use super::document::{changed, container, square, square_bytes};
 use super::vocabulary::{self, compose};
 use super::*;
 
-/// Translates, reads the layer, and reads every mesh that it names, and a few that it may not.
+/// Translates, reads the layer, and reads every mesh that it names, and a few meshes and images that it may not.
 fn use_all(name: &str, bytes: &[u8]) {
     let mut parts = vec![MeshPart::default()];
     if let Ok(translated) = translate(name, bytes) {
@@ -36,6 +36,9 @@ fn use_all(name: &str, bytes: &[u8]) {
         if let Ok(found) = model.mesh(&part) {
             check(&found);
         }
+    }
+    for number in 0..3 {
+        drop(model.image(number));
     }
 }
 
@@ -70,6 +73,18 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
     ];
     let mut seeds: Vec<_> = names.into_iter().map(|name| (name, data(name))).collect();
     seeds.push(("a.gltf", square().to_string().into_bytes()));
+    let textured = [
+        (
+            "/images",
+            json!([{"bufferView": 3}, {"uri": "data:image/png;base64,AAAA"}]),
+        ),
+        ("/textures", json!([{"source": 1}])),
+        (
+            "/materials/0/normalTexture",
+            json!({"index": 0, "texCoord": 1, "scale": 2}),
+        ),
+    ];
+    seeds.push(("a.gltf", changed(&textured)));
     seeds.push(("a.glb", container(bin.to_string().as_bytes(), Some(&square_bytes()))));
     seeds.push(("a.gltf", changed(&[("/accessors/0/sparse", sparse)])));
     let obj = "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\no a\nusemtl x\nf 1/1/1 2/1/1 3/1/1\n\
@@ -82,6 +97,20 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
 fn seeds_are_good() {
     for (name, bytes) in seeds() {
         assert!(translate(name, &bytes).is_ok(), "{name}");
+    }
+}
+
+/// Lengths to cut a file at.
+const CUTS: usize = 200;
+
+#[test]
+fn cut_at_many_lengths() {
+    for (name, bytes) in seeds() {
+        for cut in 0..CUTS {
+            let cut = bytes[..bytes.len() * cut / CUTS].to_vec();
+            use_all(name, &cut);
+            use_all(name, &repair(cut));
+        }
     }
 }
 
