@@ -5,8 +5,9 @@
 //! flattened like everything else, and nothing behind the reader knows that models exist. The layer has one root prim,
 //! named after the file; below it lie the nodes as they are nested in the file, and the scope `Materials`.
 //!
-//! Triangles stay in the file. A prim names them with its `Mesh` component by file, mesh and primitive, and [`Model`]
-//! reads them; it parses the file once, however many meshes are asked for.
+//! Triangles and images stay in the file. A prim names triangles with its `Mesh` component by file, mesh and primitive,
+//! and images with a texture by file and number. [`Model`] reads them; it parses the file once, however many are asked
+//! for.
 //!
 //! Everything that a file says is checked before it is used: each index, each length, each number. What is wrong is a
 //! [`ModelError`] that names the file, the place in it, the reason and a remedy; what is well-formed but not rendered
