@@ -63,6 +63,18 @@ fn assert_equal_samples(name: &str, k: f64, own: f64) {
 
 #[test]
 #[ignore = "takes minutes; .ci/full runs it"]
+fn env_spheres_meets_the_reference_at_equal_samples() {
+    assert_equal_samples("env_spheres", 1.35, 0.000_26);
+}
+
+#[test]
+#[ignore = "takes minutes; .ci/full runs it"]
+fn dof_motion_meets_the_reference_at_equal_samples() {
+    assert_equal_samples("dof_motion", 0.3, 0.000_06);
+}
+
+#[test]
+#[ignore = "takes minutes; .ci/full runs it"]
 fn cornell_meets_the_reference_at_equal_samples() {
     assert_equal_samples("cornell", 1.0, 0.000_07);
 }

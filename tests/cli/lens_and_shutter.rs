@@ -41,7 +41,7 @@ fn a_point_out_of_focus_becomes_a_disc_of_the_diameter_of_the_thin_lens_equation
         let folder = Folder::with_scene(&lamp_behind_lens(&lens, distance, lamp_radius));
         folder.succeed("run scene.ron -o out.exr");
         // On the plane of focus; the lamp itself is a disc there, and so are pixels squares.
-        let pixel = 2.0 * focus * 10_f64.to_radians().tan() / 64.0;
+        let pixel = 2.0 * focus * radiometry::math::tan_f64(10_f64.to_radians()) / 64.0;
         let lamp = lamp_radius * focus / distance / pixel;
         let diameter = 2.0 * lens_radius * (distance - focus).abs() / distance / pixel;
         // A disc of radius R has a mean squared radius of R²/2, and that of independent offsets adds up.

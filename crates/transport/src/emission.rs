@@ -140,11 +140,11 @@ impl<'a> EmissionSampler<'a> {
             }
             Light::Distant(disc) => {
                 let (from, pdf) = disc.sample(stream.draw_2d(0, dimension::POSITION), time);
-                self.from_infinity(-from, disc.radiance * (1.0 / pdf), &draw)?
+                self.photon_from_afar(-from, disc.radiance * (1.0 / pdf), &draw)?
             }
             Light::Environment(environment) => {
                 let (from, pdf) = environment.sample(stream.draw_2d(0, dimension::POSITION));
-                self.from_infinity(-from, environment.radiance_from(from) * (1.0 / pdf), &draw)?
+                self.photon_from_afar(-from, environment.radiance_from(from) * (1.0 / pdf), &draw)?
             }
         };
         let photon = EmittedPhoton {
@@ -158,7 +158,7 @@ impl<'a> EmissionSampler<'a> {
     }
 
     /// A photon of `irradiance` W·m⁻² across `direction`, and its flux.
-    fn from_infinity(&self, direction: Vec3, irradiance: Rgb, draw: &Draw) -> Option<(Ray, Rgb)> {
+    fn photon_from_afar(&self, direction: Vec3, irradiance: Rgb, draw: &Draw) -> Option<(Ray, Rgb)> {
         let (origin, pdf) = self.origin_at_infinity(direction, draw)?;
         Some((Ray::new(origin, direction), irradiance * (1.0 / pdf)))
     }

@@ -265,7 +265,7 @@ impl LightTable {
             };
             let Some(light) = prepare(rays, source) else { continue };
             let power = light.power(table.radius());
-            if !(power > 0.0) {
+            if power <= 0.0 || power.is_nan() {
                 continue;
             }
             let row = table.lights.len() as u32;

@@ -1,7 +1,7 @@
 use super::{BALL, CAMERA, RENDER, SKY, errors, prepare, refusal, seen_at, warnings, with_rest};
 use glam::Vec3;
 use pipeline_data::TransportScene;
-use radiometry::Rgb;
+use radiometry::{Rgb, math};
 use std::f32::consts::PI;
 
 #[test]
@@ -72,7 +72,8 @@ fn spots_and_suns_have_the_power_and_direction_that_they_say() {
     };
     let power = |prim: &str| lights(prim).world().resource::<TransportScene>().0.lights.power();
     assert!((power("SpotLight: (power: (5, 5, 5), inner_angle: 3, outer_angle: 40)") - 5.0).abs() < 1e-5);
-    let (inner, outer) = (20_f64.to_radians().cos(), 30_f64.to_radians().cos());
+    let cosine = |degrees: f32| f64::from(math::cos(degrees.to_radians()));
+    let (inner, outer) = (cosine(20.0), cosine(30.0));
     let all = std::f64::consts::PI * (2.0 - inner - outer);
     assert!((power("SpotLight: (intensity: (1, 1, 1))") - all).abs() < 1e-5);
     let narrow = refusal("\"/S\": Def(SpotLight: (inner_angle: 40)),\n");
@@ -83,7 +84,7 @@ fn spots_and_suns_have_the_power_and_direction_that_they_say() {
     // A sun in the south looks down: it is seen the other way.
     let app = lights("DistantLight: (angle: 2), Transform: (rotate: (-60, 0, 0))");
     let lights = &app.world().resource::<TransportScene>().0.lights;
-    let sun = Vec3::new(0.0, 60_f32.to_radians().sin(), 60_f32.to_radians().cos());
+    let sun = Vec3::new(0.0, math::sin(60_f32.to_radians()), math::cos(60_f32.to_radians()));
     assert_eq!(lights.escaped(sun, 0.0).count(), 1);
     assert_eq!(lights.escaped(-sun, 0.0).count(), 0);
 }
