@@ -44,7 +44,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 
 /// Tells whether scenes may use a registered type: a component that has a default, of the program or of a plug-in.
 ///
-/// The components of `bevy_ecs` itself are not for scenes. Whoever builds a [`Schema`] asks this, so that `run`, `check`
+/// The components of `bevy_ecs` itself are not for scenes. Whoever builds a [`Schema`](scene_format::Schema) asks this, so that `run`, `check`
 /// and `schema` agree.
 #[must_use]
 pub fn is_scene_component(found: &TypeRegistration) -> bool {
