@@ -32,6 +32,7 @@
 //! assert!(bsdf.has_diffuse() && sample.weight.r > sample.weight.b);
 //! ```
 
+mod beckmann;
 mod bsdf;
 mod coated_metal;
 mod conductor;
@@ -46,6 +47,7 @@ mod lobe;
 mod loss_table;
 mod metals;
 mod microsurface;
+mod normals;
 mod plastic;
 mod principled;
 mod reflectance;
@@ -66,5 +68,6 @@ pub use interior::{Crossing, Interior, InteriorList};
 pub use lobe::{BsdfSample, LobeClass, LobeValues, Transport};
 pub use metals::Metal;
 pub use microsurface::{Microsurface, SMOOTH_ALPHA, lobe_class};
+pub use normals::NormalDistribution;
 pub use plastic::PlasticBsdf;
 pub use principled::{PrincipledBsdf, PrincipledParameters};
