@@ -12,7 +12,7 @@
 //!   is the density that really was drawn from. Chi-square tests hold every sampler to it.
 //! - **Both directions of transport agree.** Multiple scattering between microfacets is added in reciprocal form, and
 //!   [`Transport`] says who pays the η² of refraction, so photons and eye paths converge to the same image.
-//! - **No energy is lost.** White metal and plastic, clear glass and their mixtures under a coat return a
+//! - **No energy is lost.** White metal (of GGX) and plastic, clear glass and their mixtures under a coat return a
 //!   uniform field unchanged, rough or smooth.
 //!
 //! It deliberately has no spectra (metals are integrated to RGB, see [`Metal`]; dispersion draws a wavelength for RGB
