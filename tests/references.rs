@@ -4,7 +4,7 @@
 
 #![expect(clippy::print_stdout, reason = "a full comparison reports its figures")]
 
-use film::{ExrImage, RgbImage, compare, read_exr};
+use film::{ExrImage, RgbImage, block_means, compare, read_exr};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -30,11 +30,13 @@ fn render(name: &str, label: &str, arguments: &[&str]) -> ExrImage {
     read_exr(&output).expect("a valid image")
 }
 
+/// The reference image of a scene, in a file of its folder.
+fn stored(name: &str, file: &str) -> RgbImage {
+    beauty(&read_exr(&scene(name).join(file)).expect("a valid image"))
+}
+
 fn reference(name: &str) -> RgbImage {
-    read_exr(&scene(name).join("reference.exr"))
-        .expect("a valid image")
-        .rgb("")
-        .expect("R, G, B")
+    stored(name, "reference.exr")
 }
 
 fn beauty(image: &ExrImage) -> RgbImage {
@@ -133,6 +135,53 @@ fn traced_ring_has_the_mean_of_the_reference() {
         );
         assert!((mean - expected[channel]).abs() < 0.01 * expected[channel] + 3.0 * standard_error);
     }
+}
+
+/// Relative difference of each block from that of the reference, the largest of the channels, in rising order.
+fn block_errors(blocks: &RgbImage, reference: &RgbImage) -> Vec<f64> {
+    let relative = |ours: f32, theirs: f32| match f64::from(ours) - f64::from(theirs) {
+        0.0 => 0.0,
+        difference => difference.abs() / f64::from(theirs),
+    };
+    let error = |(ours, theirs): (&[f32; 3], &[f32; 3])| {
+        let channel = |c: usize| relative(ours[c], theirs[c]);
+        (0..3).map(channel).fold(0.0, f64::max)
+    };
+    let mut errors: Vec<f64> = blocks.pixels.iter().zip(&reference.pixels).map(error).collect();
+    errors.sort_by(f64::total_cmp);
+    errors
+}
+
+/// Of blocks of 8×8 pixels, every other one may be off by more than 2 %, and every twentieth by more than 4 %, of its own
+/// mean in the reference.
+fn assert_blocks_meet_reference(name: &str, samples: &str) {
+    let image = render(name, "blocks", &["--samples", samples]);
+    let (blocks, reference) = (block_means(&beauty(&image), 8), stored(name, "blocks.exr"));
+    let found = compare(&blocks, &reference, 0).expect("same size");
+    let errors = block_errors(&blocks, &reference);
+    let quantile = |share: f64| errors[(share * (errors.len() - 1) as f64).round() as usize];
+    let (median, high) = (quantile(0.5), quantile(0.95));
+    println!(
+        "{name}: {} blocks off by {:.2} % at the median, {:.2} % at the 95th percentile, {:.1} % at most; means off by {:?}",
+        errors.len(),
+        100.0 * median,
+        100.0 * high,
+        100.0 * quantile(1.0),
+        found.relative_difference,
+    );
+    assert!(median < 0.02 && high < 0.04, "{name}: {median}, {high}");
+}
+
+#[test]
+#[ignore = "takes minutes; .ci/full runs it"]
+fn cornell_box_meets_the_blocks_of_its_reference() {
+    assert_blocks_meet_reference("cornell_box", "128");
+}
+
+#[test]
+#[ignore = "takes minutes; .ci/full runs it"]
+fn veach_mis_meets_the_blocks_of_its_reference() {
+    assert_blocks_meet_reference("veach_mis", "64");
 }
 
 /// Side of the blocks in which the caustic is looked for, and by how much its region is grown.

@@ -101,7 +101,8 @@ pub use fixed_sum::{FixedSum, MAX_MAGNITUDE};
 pub use guard::{Rejected, RejectedCounts};
 pub use layout::{AuxGroup, ChannelLayout};
 pub use metrics::{
-    BlockDifference, Comparison, MetricsError, TRIM, WorstPixel, block_differences, compare, difference, false_colour,
+    BlockDifference, Comparison, MetricsError, TRIM, WorstPixel, block_differences, block_means, compare, difference,
+    false_colour,
 };
 pub use pixels::{Channel, Image, RgbImage};
 pub use png_file::{write_png, write_rgb8_png};

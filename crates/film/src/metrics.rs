@@ -147,22 +147,46 @@ pub fn block_differences(
     assert!(side > 0, "a block has at least one pixel");
     check_sizes(image, reference)?;
     let (width, height) = (image.width, image.height);
-    let mean = |pixels: &[[f32; 3]], x: u32, y: u32| {
-        let columns = x as usize..(x.saturating_add(side).min(width)) as usize;
-        let rows = y as usize..(y.saturating_add(side).min(height)) as usize;
-        let lines = rows.map(|row| &pixels[row * width as usize..][columns.clone()]);
-        channel_means(lines.flatten())
-    };
     let corners = |end: u32| (0..end).step_by(side as usize);
     let blocks = corners(height).flat_map(|y| corners(width).map(move |x| (x, y)));
     Ok(blocks
         .map(|(x, y)| BlockDifference {
             x,
             y,
-            mean_image: mean(&image.pixels, x, y),
-            mean_reference: mean(&reference.pixels, x, y),
+            mean_image: block_mean(image, x, y, side),
+            mean_reference: block_mean(reference, x, y, side),
         })
         .collect())
+}
+
+/// Reduces an image to the means over square blocks, a pixel each: what [`block_differences`] compares, to keep as a small
+/// reference.
+///
+/// - `side`: of a block in pixels, at least 1. Blocks at the right and bottom are cut off.
+/// - values that are not finite count as 0.
+///
+/// # Panics
+///
+/// If `side` is 0.
+#[must_use]
+pub fn block_means(image: &RgbImage, side: u32) -> RgbImage {
+    assert!(side > 0, "a block has at least one pixel");
+    let size = (image.width.div_ceil(side), image.height.div_ceil(side));
+    let blocks = (0..size.1).flat_map(|y| (0..size.0).map(move |x| (x * side, y * side)));
+    RgbImage {
+        width: size.0,
+        height: size.1,
+        pixels: blocks
+            .map(|(x, y)| block_mean(image, x, y, side).map(|v| v as f32))
+            .collect(),
+    }
+}
+
+fn block_mean(image: &RgbImage, x: u32, y: u32, side: u32) -> [f64; 3] {
+    let columns = x as usize..(x.saturating_add(side).min(image.width)) as usize;
+    let rows = y as usize..(y.saturating_add(side).min(image.height)) as usize;
+    let lines = rows.map(|row| &image.pixels[row * image.width as usize..][columns.clone()]);
+    channel_means(lines.flatten())
 }
 
 /// Returns image − reference, for each pixel and channel; signed.

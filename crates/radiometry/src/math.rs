@@ -66,6 +66,13 @@ pub fn ln(x: f32) -> f32 {
     libm::logf(x)
 }
 
+/// Complementary error function, `2/√π ∫ e^(−t²) dt` from x to infinity; in [0, 2].
+#[inline]
+#[must_use]
+pub fn erfc(x: f32) -> f32 {
+    libm::erfcf(x)
+}
+
 /// x to the power y.
 #[inline]
 #[must_use]

@@ -1,7 +1,7 @@
 use crate::energy::reflection_loss;
 use crate::fresnel::{average_fresnel_conductor, fresnel_conductor, schlick};
-use crate::ggx::Ggx;
-use crate::{BsdfSample, Metal, Microsurface};
+use crate::normals::Normals;
+use crate::{BsdfSample, Metal, Microsurface, NormalDistribution};
 use glam::{Vec2, Vec3};
 use radiometry::Rgb;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -54,7 +54,8 @@ impl ConductorFresnel {
     }
 }
 
-/// A metal: a mirror, or a GGX reflection with the light that bounces between microfacets added.
+/// A metal: a mirror, or a GGX reflection with the light that bounces between microfacets added, or a Beckmann reflection
+/// without it.
 ///
 /// `f = F(ω_o·h) D(h) G₂(ω_o, ω_i)/(4 cosθ_o cosθ_i) + F_ms (1 − E(ω_o))(1 − E(ω_i))/(π (1 − Ē))`,
 /// `F_ms = F̄² Ē/(1 − F̄ (1 − Ē))`
@@ -62,7 +63,8 @@ impl ConductorFresnel {
 /// Source: Walter et al. 2007 with Smith's height-correlated masking (Heitz 2014); multiple scattering by Kulla and
 /// Conty, "Revisiting Physically Based Shading at Imageworks", SIGGRAPH course 2017, with the F̄² of S. Hill, "A
 /// Multi-Faceted Exploration", 2018. The second term keeps the lobe reciprocal, so paths from the eye and from the
-/// light agree, and a white surface reflects all light at every roughness.
+/// light agree, and a white surface reflects all light at every roughness. What Beckmann's surfaces lose is not tabulated, so
+/// they have no second term.
 ///
 /// Seen from either side. Normals are sampled among the visible ones; the second term is sampled by its own shape, with
 /// probability `1 − E(ω_o)`.
@@ -71,11 +73,14 @@ pub struct ConductorBsdf {
     fresnel: ConductorFresnel,
     /// `F_ms/(π (1 − Ē))`: the second term without its two factors; zero when nothing is compensated.
     multiple: Rgb,
+    /// Factor for all that it reflects.
+    tint: Rgb,
     surface: Microsurface,
+    distribution: NormalDistribution,
 }
 
 impl ConductorBsdf {
-    /// Builds a metal from its Fresnel term and its surface.
+    /// Builds a metal from its Fresnel term and its surface, of GGX.
     #[must_use]
     pub fn new(fresnel: ConductorFresnel, surface: Microsurface) -> Self {
         let loss = if surface.has_energy_compensation() {
@@ -94,7 +99,33 @@ impl ConductorBsdf {
         Self {
             fresnel,
             multiple,
+            tint: Rgb::WHITE,
             surface: surface.with_energy_compensation(loss > 0.0),
+            distribution: NormalDistribution::Ggx,
+        }
+    }
+
+    /// The same metal with another distribution of the same α. Beckmann's takes the energy compensation away.
+    #[must_use]
+    pub fn with_distribution(self, distribution: NormalDistribution) -> Self {
+        match distribution {
+            NormalDistribution::Ggx => Self { distribution, ..self },
+            NormalDistribution::Beckmann => Self {
+                multiple: Rgb::BLACK,
+                surface: self.surface.with_energy_compensation(false),
+                distribution,
+                ..self
+            },
+        }
+    }
+
+    /// The same metal with a factor for all that it reflects, ≥ 0. *Non-physical*: other renderers have it.
+    #[must_use]
+    pub fn with_tint(self, tint: Rgb) -> Self {
+        Self {
+            multiple: self.multiple * tint,
+            tint,
+            ..self
         }
     }
 
@@ -105,6 +136,17 @@ impl ConductorBsdf {
         self.surface
     }
 
+    #[inline]
+    fn normals(&self) -> Normals {
+        Normals::new(self.distribution, self.surface.alpha())
+    }
+
+    /// Reflectance of a microfacet, tinted.
+    #[inline]
+    fn reflectance(&self, cos_i: f32) -> Rgb {
+        self.fresnel.reflectance(cos_i) * self.tint
+    }
+
     /// `f·|cosθ_i|` and the density of [`Self::sample`]; zero for a smooth metal.
     #[inline]
     pub(crate) fn eval_and_pdf(&self, wo: Vec3, wi: Vec3) -> (Rgb, f32) {
@@ -113,10 +155,10 @@ impl ConductorBsdf {
         }
         let h = (wo + wi).normalize();
         let (cos_o, cos_i) = (wo.z.abs(), wi.z.abs());
-        let ggx = Ggx::new(self.surface.alpha());
-        let density = ggx.density(h);
-        let value = self.fresnel.reflectance(wo.dot(h)) * (density * ggx.visibility(cos_o, cos_i) * cos_i);
-        let pdf = 0.25 * density * ggx.masking_over_cos(cos_o);
+        let normals = self.normals();
+        let density = normals.density(h);
+        let value = self.reflectance(wo.dot(h)) * (density * normals.visibility(cos_o, cos_i) * cos_i);
+        let pdf = 0.25 * density * normals.masking_over_cos(cos_o);
         if !self.surface.has_energy_compensation() {
             return (value, pdf);
         }
@@ -135,7 +177,7 @@ impl ConductorBsdf {
         }
         let class = self.surface.class();
         if self.surface.is_smooth() {
-            let weight = self.fresnel.reflectance(wo.z);
+            let weight = self.reflectance(wo.z);
             return Some(BsdfSample::delta_reflection(wo, weight));
         }
         let up = Vec3::new(wo.x, wo.y, wo.z.abs());
@@ -146,7 +188,7 @@ impl ConductorBsdf {
         let mut wi = match multiple {
             Some((share, loss)) if u_lobe < share => loss.sample(u),
             _ => {
-                let h = Ggx::new(self.surface.alpha()).sample_visible_normal(up, u);
+                let h = self.normals().sample_visible_normal(up, u);
                 (2.0 * up.dot(h) * h - up).normalize()
             }
         };
@@ -158,10 +200,10 @@ impl ConductorBsdf {
         BsdfSample::from_value(wi, value, pdf, class)
     }
 
-    /// Directional albedo, with the Fresnel term taken at the macroscopic normal.
+    /// Directional albedo, with the Fresnel term taken at the macroscopic normal, and without what a Beckmann surface loses.
     pub(crate) fn albedo(&self, wo: Vec3) -> Rgb {
-        let f = self.fresnel.reflectance(wo.z);
-        if self.surface.is_smooth() {
+        let f = self.reflectance(wo.z);
+        if self.surface.is_smooth() || self.distribution == NormalDistribution::Beckmann {
             return f;
         }
         let loss = reflection_loss(self.surface.alpha());

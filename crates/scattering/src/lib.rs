@@ -12,7 +12,7 @@
 //!   is the density that really was drawn from. Chi-square tests hold every sampler to it.
 //! - **Both directions of transport agree.** Multiple scattering between microfacets is added in reciprocal form, and
 //!   [`Transport`] says who pays the η² of refraction, so photons and eye paths converge to the same image.
-//! - **No energy is lost.** White metal and plastic, clear glass and their mixtures under a coat return a
+//! - **No energy is lost.** White metal (of GGX) and plastic, clear glass and their mixtures under a coat return a
 //!   uniform field unchanged, rough or smooth.
 //!
 //! It deliberately has no spectra (metals are integrated to RGB, see [`Metal`]; dispersion draws a wavelength for RGB
@@ -32,6 +32,7 @@
 //! assert!(bsdf.has_diffuse() && sample.weight.r > sample.weight.b);
 //! ```
 
+mod beckmann;
 mod bsdf;
 mod coated_metal;
 mod conductor;
@@ -46,6 +47,7 @@ mod lobe;
 mod loss_table;
 mod metals;
 mod microsurface;
+mod normals;
 mod plastic;
 mod principled;
 mod reflectance;
@@ -66,5 +68,6 @@ pub use interior::{Crossing, Interior, InteriorList};
 pub use lobe::{BsdfSample, LobeClass, LobeValues, Transport};
 pub use metals::Metal;
 pub use microsurface::{Microsurface, SMOOTH_ALPHA, lobe_class};
+pub use normals::NormalDistribution;
 pub use plastic::PlasticBsdf;
 pub use principled::{PrincipledBsdf, PrincipledParameters};

@@ -87,6 +87,18 @@ fn blocks_cover_the_image() {
 }
 
 #[test]
+fn block_means_are_those_that_are_compared() {
+    let sloped = image(19, 9, |i| [i as f32, 0.0, f32::NAN]);
+    let means = block_means(&sloped, 8);
+    assert_eq!((means.width, means.height), (3, 2));
+    let blocks = block_differences(&sloped, &sloped, 8).unwrap();
+    for (mean, block) in means.pixels.iter().zip(&blocks) {
+        assert_eq!(*mean, block.mean_image.map(|v| v as f32));
+    }
+    assert_eq!(block_means(&sloped, 1).pixels[7], [7.0, 0.0, 0.0]);
+}
+
+#[test]
 fn differences_are_signed_and_painted() {
     let reference = image(2, 2, |_| [1.0; 3]);
     let values = [2.0, 0.0, 1.0, f32::NAN];

@@ -56,11 +56,17 @@ pub struct Conductor {
     /// The same reflectance at every angle; non-physical, but exact in a mirror box. Counts when nothing else is written.
     #[reflect(@Range::closed(0.0, 1.0), @Exclusive::group("spectrum"))]
     pub reflectance: Vec3,
-    /// 0 is a mirror, 1 nearly matt; the GGX width is its square.
+    /// 0 is a mirror, 1 nearly matt; the width α of the distribution is its square.
     #[reflect(@Range::closed(0.0, 1.0))]
     pub roughness: f32,
+    /// How the normals of its microfacets are distributed.
+    pub distribution: NormalDistribution,
     /// Adds the light that bounces more than once between the microfacets. Off, rough metal is too dark; non-physical.
+    /// Beckmann has none: what it loses is not tabulated.
     pub energy_compensation: bool,
+    /// Factor for all that it reflects; non-physical, for scenes of renderers that have it.
+    #[reflect(@Range::closed(0.0, 1.0))]
+    pub tint: Vec3,
 }
 
 impl Default for Conductor {
@@ -72,7 +78,28 @@ impl Default for Conductor {
             f0: None,
             reflectance: Vec3::ONE,
             roughness: 0.0,
+            distribution: NormalDistribution::default(),
             energy_compensation: true,
+            tint: Vec3::ONE,
+        }
+    }
+}
+
+/// Distribution of the normals of microfacets.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NormalDistribution {
+    /// Highlights with a long tail, as of most real surfaces (Trowbridge and Reitz).
+    #[default]
+    Ggx,
+    /// Highlights that end.
+    Beckmann,
+}
+
+impl From<NormalDistribution> for scattering::NormalDistribution {
+    fn from(distribution: NormalDistribution) -> Self {
+        match distribution {
+            NormalDistribution::Ggx => Self::Ggx,
+            NormalDistribution::Beckmann => Self::Beckmann,
         }
     }
 }

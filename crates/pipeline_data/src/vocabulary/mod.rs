@@ -31,7 +31,7 @@ pub use geometry::{
     Band, Cuboid, Cylinder, Disc, GeometryComponents, GeometryComponentsItem, GeometrySource, Mesh, Quad, Sphere, Torus,
 };
 pub use light::{DistantLight, Emission, EnvironmentLight, PointLight, SpotLight};
-pub use material::{Conductor, Dielectric, Diffuse, Plastic};
+pub use material::{Conductor, Dielectric, Diffuse, NormalDistribution, Plastic};
 pub use principled::Principled;
 pub use render::{CausticMethod, DirectMethod, IndirectMethod, LightTransport, Render, SpecularMethod};
 pub use structure::{LookAt, MaterialBinding, Transform};

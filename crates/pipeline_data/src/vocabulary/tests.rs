@@ -7,7 +7,7 @@ use scene_format::{ComponentInfo, Options, Schema, load_str, schema_text};
 const TABLE: &str = "
 Band            | inner_radius 0.9 | outer_radius 1 | height 0.5 | bevel 0
 Camera          | fov 40
-Conductor       | metal ? | eta ? | k ? | f0 ? | reflectance (1, 1, 1) | roughness 0 | energy_compensation true
+Conductor       | metal ? | eta ? | k ? | f0 ? | reflectance (1, 1, 1) | roughness 0 | distribution Ggx | energy_compensation true | tint (1, 1, 1)
 Cuboid          | size (1, 1, 1)
 Cylinder        | radius 1 | height 1 | capped true
 Dielectric      | ior 1.5 | roughness 0 | energy_compensation true | tint (1, 1, 1) | absorption (0, 0, 0) | dispersion ? | thin false | priority 0

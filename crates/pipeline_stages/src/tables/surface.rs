@@ -2,11 +2,14 @@
 
 use pipeline_data::vocabulary::{Conductor, Dielectric, Findings, Plastic, Principled, field_place};
 use radiometry::{Rgb, math};
-use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, Dispersion, Metal, Microsurface, PlasticBsdf};
-use scene_format::{Diagnostic, Scene};
+use scattering::{
+    Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, Dispersion, Metal, Microsurface, NormalDistribution,
+    PlasticBsdf,
+};
+use scene_format::{Diagnostic, FieldState, Scene};
 use transport::Material;
 
-/// A metal. An unknown one is reported, and black.
+/// A metal. An unknown one is reported, and black; what has no effect is reported as well.
 pub(super) fn conductor_material(
     conductor: &Conductor,
     specular_alpha: f32,
@@ -28,9 +31,30 @@ pub(super) fn conductor_material(
     };
     let surface = Microsurface::from_roughness(conductor.roughness, specular_alpha)
         .with_energy_compensation(conductor.energy_compensation);
+    let distribution = conductor.distribution.into();
+    if distribution == NormalDistribution::Beckmann && conductor.energy_compensation {
+        warn_of_compensation(scene, prim, findings);
+    }
+    let bsdf = ConductorBsdf::new(fresnel, surface)
+        .with_distribution(distribution)
+        .with_tint(conductor.tint.into());
     Material {
-        bsdf: Bsdf::Conductor(ConductorBsdf::new(fresnel, surface)),
+        bsdf: Bsdf::Conductor(bsdf),
         ..Material::default()
+    }
+}
+
+/// Energy compensation is on by default, so only who writes it is told that a Beckmann surface has none.
+fn warn_of_compensation(scene: &Scene, prim: u32, findings: &mut Findings) {
+    let conductor = scene.prims[prim as usize].component("Conductor");
+    let written = conductor.and_then(|found| found.field("energy_compensation"));
+    if let Some(field) = written.filter(|field| !matches!(field.state, FieldState::Blocked)) {
+        let finding = Diagnostic::warning(
+            "without-effect",
+            "`energy_compensation` of a Beckmann surface has no effect",
+        )
+        .note("what such a surface loses is not tabulated; `Ggx` has it");
+        findings.push_at(Some(field.place), finding);
     }
 }
 

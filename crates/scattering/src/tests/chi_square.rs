@@ -1,5 +1,5 @@
 use super::*;
-use crate::{DiffuseBsdf, Metal, Transport};
+use crate::{DiffuseBsdf, Transport};
 use std::f32::consts::{PI, TAU};
 
 const THETA_BINS: usize = 24;
@@ -107,6 +107,14 @@ fn metals() {
     let gold = Metal::from_name("gold").expect("a listed metal");
     let bsdf = Bsdf::Conductor(ConductorBsdf::new(gold.into(), surface(0.3, true)));
     assert_sampled_as_promised("gold", &bsdf, &[0.7]);
+}
+
+#[test]
+fn metals_of_beckmann() {
+    for alpha in [0.06, 0.2, 0.5, 1.0] {
+        let name = format!("Beckmann metal of α {alpha}");
+        assert_sampled_as_promised(&name, &beckmann(alpha), &[1.0, 0.6, 0.1, -0.3]);
+    }
 }
 
 #[test]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{DiffuseBsdf, Metal, Transport};
+use crate::{DiffuseBsdf, Transport};
 use radiometry::{SampleStream, StageKey};
 
 const KEY: StageKey = StageKey::new("furnace");
@@ -29,6 +29,39 @@ fn white_metal_reflects_all_light() {
             let share = scattered(metal(1.0, alpha, true), direction(cos_o), 32);
             assert!((share - 1.0).abs() < TOLERANCE, "α {alpha} at {cos_o}: {share}");
         }
+    }
+}
+
+#[test]
+fn beckmann_loses_little_where_it_is_narrow_and_never_gains() {
+    for cos_o in COSINES {
+        let white = |alpha| {
+            let Bsdf::Conductor(metal) = metal(1.0, alpha, true) else {
+                return Bsdf::Black;
+            };
+            Bsdf::Conductor(metal.with_distribution(NormalDistribution::Beckmann))
+        };
+        for alpha in ALPHAS {
+            let share = scattered(white(alpha), direction(cos_o), 24);
+            assert!(share < 1.002, "α {alpha} at {cos_o}: {share}");
+        }
+        let narrow = scattered(white(0.02), direction(cos_o), 24);
+        assert!(cos_o < 0.1 || narrow > 0.99, "at {cos_o}: {narrow}");
+    }
+}
+
+#[test]
+fn a_tint_is_a_factor_for_all_that_a_metal_reflects() {
+    for alpha in [0.0, 0.3] {
+        let wo = direction(0.6);
+        let tinted = |bsdf: Bsdf| match bsdf {
+            Bsdf::Conductor(metal) => Bsdf::Conductor(metal.with_tint(Rgb::splat(0.3))),
+            other => other,
+        };
+        let plain = metal(0.8, alpha, true);
+        let (share, whole) = (scattered(tinted(plain), wo, 16), scattered(plain, wo, 16));
+        assert!((share - 0.3 * whole).abs() < 1e-6, "α {alpha}: {share} of {whole}");
+        assert!((tinted(plain).albedo(wo).r - 0.3 * plain.albedo(wo).r).abs() < 1e-6);
     }
 }
 

@@ -7,8 +7,8 @@ mod reciprocity;
 mod robustness;
 
 use crate::{
-    Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, Microsurface, PlasticBsdf, PrincipledBsdf,
-    PrincipledParameters,
+    Bsdf, ConductorBsdf, ConductorFresnel, DielectricBsdf, Metal, Microsurface, NormalDistribution, PlasticBsdf,
+    PrincipledBsdf, PrincipledParameters,
 };
 use glam::{Vec2, Vec3};
 use radiometry::{Rgb, hash_u64, math};
@@ -37,6 +37,13 @@ fn surface(alpha: f32, compensated: bool) -> Microsurface {
 fn metal(reflectance: f32, alpha: f32, compensated: bool) -> Bsdf {
     let fresnel = ConductorFresnel::Constant(Rgb::splat(reflectance));
     Bsdf::Conductor(ConductorBsdf::new(fresnel, surface(alpha, compensated)))
+}
+
+/// Gold of a Beckmann surface.
+fn beckmann(alpha: f32) -> Bsdf {
+    let gold = Metal::from_name("gold").expect("a listed metal");
+    let bsdf = ConductorBsdf::new(gold.into(), surface(alpha, true));
+    Bsdf::Conductor(bsdf.with_distribution(NormalDistribution::Beckmann))
 }
 
 fn glass(ior: f32, alpha: f32, compensated: bool) -> Bsdf {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Metal, Transport};
+use crate::Transport;
 use radiometry::warp;
 
 /// Pairs of directions away from the horizon, where the ratio of two small numbers would be compared.
@@ -47,6 +47,9 @@ fn metals_are_reciprocal() {
             let bsdf = Bsdf::Conductor(ConductorBsdf::new(gold.into(), surface(alpha, compensated)));
             assert_reciprocal("gold", &bsdf);
         }
+    }
+    for alpha in [0.2, 0.4, 1.0] {
+        assert_reciprocal("gold of Beckmann", &beckmann(alpha));
     }
 }
 

@@ -85,7 +85,7 @@ fn any_direction() -> impl Strategy<Value = Vec3> {
 fn any_bsdf() -> impl Strategy<Value = Bsdf> {
     let roughness = prop_oneof![0.0_f32..=1.0, Just(0.0), Just(1.0), 0.03_f32..0.04];
     let ior = prop_oneof![0.3_f32..4.0, Just(1.0), 0.999_f32..1.001, Just(1e-2), Just(100.0)];
-    (roughness, ior, any::<bool>(), 0..9_usize, 0.0_f32..=1.0).prop_map(|(roughness, ior, compensated, kind, tone)| {
+    (roughness, ior, any::<bool>(), 0..10_usize, 0.0_f32..=1.0).prop_map(|(roughness, ior, compensated, kind, tone)| {
         let surface = Microsurface::from_roughness(roughness, SPECULAR_ALPHA).with_energy_compensation(compensated);
         let rgb = Rgb::new(tone, 1.0, 0.5 * tone);
         let metal = |fresnel| Bsdf::Conductor(ConductorBsdf::new(fresnel, surface));
@@ -108,7 +108,8 @@ fn any_bsdf() -> impl Strategy<Value = Bsdf> {
                     ..parameters
                 })
             }
-            7 => principled(PrincipledParameters {
+            7 => beckmann(surface.alpha()),
+            8 => principled(PrincipledParameters {
                 base_color: rgb,
                 metallic: 0.5 * tone,
                 roughness,

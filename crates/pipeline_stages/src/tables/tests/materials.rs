@@ -1,4 +1,4 @@
-use super::{CAMERA, SKY, prepare, refusal, seen_at, with_rest};
+use super::{CAMERA, SKY, prepare, refusal, seen_at, warnings, with_rest};
 use bevy_app::App;
 use glam::Vec3;
 use radiometry::Rgb;
@@ -55,6 +55,38 @@ fn materials_become_the_bsdfs_that_they_describe() {
     assert!(matches!(glass.bsdf, Bsdf::Dielectric(b) if !b.is_thin() && b.surface().class() == LobeClass::Specular));
     let pane = with_rest("\"/A\": Def(Quad: (), Dielectric: (thin: true)),\n");
     assert!(matches!(seen_at(&pane, 0.0, 0.0).0.bsdf, Bsdf::Dielectric(b) if b.is_thin()));
+}
+
+#[test]
+fn beckmann_has_no_energy_compensation_and_says_so_where_it_is_asked_for() {
+    let with = |fields: &str| {
+        with_rest(&format!(
+            "\"/A\": Def(Sphere: (), Conductor: (roughness: 0.5{fields})),\n"
+        ))
+    };
+    let compensated = |app: &App| match seen_at(app, 0.0, 0.0).0.bsdf {
+        Bsdf::Conductor(metal) => metal.surface().has_energy_compensation(),
+        other => panic!("{other:?}"),
+    };
+    assert!(compensated(&with("")) && compensated(&with(", distribution: Ggx")));
+    for silent in ["", ", energy_compensation: false", ", energy_compensation: Block"] {
+        let app = with(&format!(", distribution: Beckmann{silent}"));
+        assert!(!compensated(&app) && warnings(&app).is_empty(), "{silent}");
+    }
+    let app = with(", distribution: Beckmann, energy_compensation: true");
+    let text = warnings(&app);
+    assert!(!compensated(&app));
+    assert!(
+        text.contains("warning[without-effect]: `energy_compensation`") && text.contains("scene.ron:2:"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_metal_is_tinted() {
+    let app = with_rest("\"/A\": Def(Sphere: (), Conductor: (reflectance: (1, 1, 0.5), tint: (0.5, 1, 0.5))),\n");
+    let albedo = seen_at(&app, 0.0, 0.0).0.bsdf.albedo(Vec3::Z);
+    assert_eq!(albedo, Rgb::new(0.5, 1.0, 0.25));
 }
 
 #[test]
