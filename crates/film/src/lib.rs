@@ -49,7 +49,7 @@
 //! for span in &mut film.spans_mut(0..end, 16) {
 //!     for local in 0..span.len() {
 //!         let x = span.pixel_of(local).x as f32;
-//!         span.add_sample(local, &[[x; 3], [0.5; 3]], 1.0, &[])?;
+//!         span.add_sample(local, 0, &[[x; 3], [0.5; 3]], 1.0, &[])?;
 //!     }
 //! }
 //!

@@ -112,7 +112,8 @@ fn lights_that_cannot_be_are_refused() {
     );
     let file = refusal("\"/More\": Def(EnvironmentLight: (file: \"quad.obj\")),\n");
     assert!(
-        file.contains("error[not-supported-yet]: `EnvironmentLight.file`"),
+        file.contains("error[bad-picture]")
+            && file.contains("quad.obj: it is no PNG, JPEG, Radiance HDR or OpenEXR file"),
         "{file}"
     );
     let bright = refusal("\"/A\": Def(Sphere: (radius: 1e-18), Emission: (power: (1e30, 1, 1))),\n");
