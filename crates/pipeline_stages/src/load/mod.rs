@@ -6,7 +6,7 @@
 //! [`PrimIndex`](pipeline_data::PrimIndex) and the components that the scene writes, as they are at the scene's frame;
 //! `import_meshes` brings the files that `Mesh` names into the [`MeshStore`](pipeline_data::MeshStore), each once, and
 //! mixes their bytes into the scene's hash; `import_environments` does the same with the pictures of
-//! `EnvironmentLight` ([`EnvironmentMaps`](pipeline_data::EnvironmentMaps)), `import_textures` with those of materials
+//! `EnvironmentLight` ([`EnvironmentMaps`]), `import_textures` with those of materials
 //! ([`TextureStore`]).
 //!
 //! What a scene may say is what plug-ins registered: see [`is_scene_component`](pipeline_data::vocabulary::is_scene_component). What is wrong goes to the
