@@ -11,6 +11,9 @@ use std::io::Cursor;
 
 /// Most that the format of PNG can pack into a byte.
 const DEFLATE: u64 = 1032;
+/// Most pixels of a JPEG for each byte: a block of 8 by 8 values takes at least a bit, and a component has at least a
+/// value for every 4 by 4 pixels.
+const PIXELS_OF_JPEG_BYTE: u64 = 8 * 8 * 4 * 4 * 8;
 /// Reserved for what is beside the pixels of a PNG, such as a profile.
 const BESIDE: u64 = 16 << 20;
 
@@ -33,7 +36,13 @@ pub(super) fn decode_jpeg(bytes: &[u8], limits: &PictureLimits) -> Result<Pictur
     if !jpeg_ends(bytes) {
         return Err(TextureError::malformed("the end is missing"));
     }
-    read(JpegDecoder::new(Cursor::new(bytes)).map_err(describe)?, limits)
+    let decoder = JpegDecoder::new(Cursor::new(bytes)).map_err(describe)?;
+    let (width, height) = decoder.dimensions();
+    limits.check(width, height)?;
+    if u64::from(width) * u64::from(height) > PIXELS_OF_JPEG_BYTE * bytes.len() as u64 {
+        return Err(TextureError::malformed("too short for its pixels"));
+    }
+    read(decoder, limits)
 }
 
 /// Tells whether the scan of a JPEG is followed by its end mark; the decoder fills what is missing with grey.
@@ -42,6 +51,11 @@ fn jpeg_ends(bytes: &[u8]) -> bool {
     const SCAN: u8 = 0xda;
     let mut at = 2;
     while let Some(&[0xff, mark, high, low]) = bytes.get(at..at + 4) {
+        if mark == 0xff {
+            // A fill byte: any number of them may stand before a mark.
+            at += 1;
+            continue;
+        }
         at += 2 + usize::from(u16::from_be_bytes([high, low]));
         if mark == SCAN {
             break;

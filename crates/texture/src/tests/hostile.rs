@@ -88,3 +88,23 @@ fn a_picture_without_pixels_is_refused() {
     assert!(crate::Picture::from_rgb(0, 4, Vec::new()).is_err());
     assert!(crate::Picture::from_rgb(1, 1, vec![0.0; 4]).is_err());
 }
+
+/// Fill bytes may stand before any mark (ITU-T T.81, B.1.1.2), and the end must be found all the same.
+#[test]
+fn fill_bytes_before_marks_of_jpeg_are_skipped() {
+    let [_, file, ..] = samples();
+    let plain = read(&file).unwrap();
+    let mut filled = file[..2].to_vec();
+    filled.extend([0xff, 0xff]);
+    filled.extend(&file[2..]);
+    assert_eq!(read(&filled).unwrap(), plain);
+}
+
+/// 11,000 by 11,000 pixels in a few hundred bytes: no scan is that short.
+#[test]
+fn a_jpeg_too_short_for_its_blocks_is_refused() {
+    let [_, mut file, ..] = samples();
+    let frame = file.windows(2).position(|pair| pair == [0xff, 0xc0]).unwrap();
+    file[frame + 5..frame + 9].copy_from_slice(&[0x2a, 0xf8, 0x2a, 0xf8]);
+    assert!(matches!(read(&file), Err(TextureError::Malformed { .. })));
+}
