@@ -40,7 +40,7 @@ fn assert_sane(bsdf: &Bsdf, wo: Vec3, u_lobe: f32, u: Vec2) {
             value.diffuse
         };
         // One of the two classes is drawn, by what they carry.
-        let weight = of_class * (value.total().mean() / (of_class.mean() * pdf));
+        let weight = of_class * (value.total().mean() / of_class.mean() / pdf);
         if value.total().is_black() {
             assert_eq!(s.weight, Rgb::BLACK);
             continue;
