@@ -70,6 +70,7 @@ pub use bounds::Bounds;
 pub use error::SpatialError;
 pub use geometry::{Geometry, Instance, Placement, Shape, TriangleMesh};
 pub use photon_tree::{InvalidPhotonTree, Nearest, NearestScratch, Neighbour, PhotonTree, PhotonTreeError};
+pub use placed::straight_between;
 pub use ray::{Ray, RayHit, SurfacePoint, connect, spawn_origin};
 pub use ray_scene::{MOST_DISTANT, RayScene};
 pub use sampling::{DirectionSample, SurfacePiece, SurfaceSample, SurfaceSampler};

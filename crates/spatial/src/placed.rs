@@ -85,7 +85,7 @@ fn check_motion(row: usize, keys: &[DAffine3]) -> Result<(), SpatialError> {
     let first = Pose::new(row, &keys[0])?;
     for pair in keys.windows(2) {
         for share in [0.25, 0.5, 0.75, 1.0] {
-            if Pose::new(row, &mix(&pair[0], &pair[1], share))?.mirrored != first.mirrored {
+            if Pose::new(row, &straight_between(&pair[0], &pair[1], share))?.mirrored != first.mirrored {
                 return Err(SpatialError::SingularTransform { instance: row });
             }
         }
@@ -98,10 +98,14 @@ fn between(keys: &[DAffine3], time: f32) -> DAffine3 {
     let last = keys.len() - 1;
     let along = f64::from(time.clamp(0.0, 1.0)) * last as f64;
     let index = (along as usize).min(last - 1);
-    mix(&keys[index], &keys[index + 1], along - index as f64)
+    straight_between(&keys[index], &keys[index + 1], along - index as f64)
 }
 
-fn mix(a: &DAffine3, b: &DAffine3, share: f64) -> DAffine3 {
+/// The transform under which every point is on the straight way between its places under two others.
+///
+/// - `share`: of the way from `a` to `b`, in [0, 1].
+#[must_use]
+pub fn straight_between(a: &DAffine3, b: &DAffine3, share: f64) -> DAffine3 {
     DAffine3 {
         matrix3: a.matrix3 * (1.0 - share) + b.matrix3 * share,
         translation: a.translation * (1.0 - share) + b.translation * share,

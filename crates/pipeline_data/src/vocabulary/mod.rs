@@ -8,8 +8,8 @@
 //! Conventions: right-handed, Y up, metres; degrees in files. Colours are linear RGB with Rec.709 primaries. Light is
 //! radiometric. Whatever places a prim is in `f64`, so that a scene ten kilometres away keeps its precision.
 //!
-//! Deliberately absent is everything that no stage renders yet: volumes, motion, lenses. A field that exists
-//! and cannot be served yet (`Dielectric.dispersion`, `EnvironmentLight.file`) is refused with its place.
+//! Deliberately absent is what no stage renders yet, volumes, and what belongs to one stage alone, which registers it:
+//! lenses, shutters, photon maps. A field that exists and cannot be served yet (`Render.passes`) is refused with its place.
 
 mod camera;
 mod film;

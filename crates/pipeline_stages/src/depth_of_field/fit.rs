@@ -31,10 +31,7 @@ pub(super) fn fit_lens(
             findings.push_at(field_place(scene, index.0, "DepthOfField", &["blades"]), finding);
             continue;
         }
-        let radius = match lens.fstop {
-            Some(fstop) => 0.0005 * lens.focal_length / fstop,
-            None => lens.lens_radius,
-        };
+        let radius = lens.radius();
         let looked_through = settings
             .as_ref()
             .is_some_and(|settings| settings.camera_prim == index.0);

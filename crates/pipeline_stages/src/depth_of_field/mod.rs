@@ -60,6 +60,17 @@ impl Default for DepthOfField {
     }
 }
 
+impl DepthOfField {
+    /// Radius of the lens in metres, as one of the two fields says.
+    fn radius(&self) -> f32 {
+        const METRES_PER_MM: f32 = 0.001;
+        match self.fstop {
+            Some(fstop) => 0.5 * METRES_PER_MM * self.focal_length / fstop,
+            None => self.lens_radius,
+        }
+    }
+}
+
 /// Where this stage works.
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct DepthOfFieldSystems;

@@ -5,6 +5,7 @@ use glam::{DAffine3, DVec3};
 use pipeline_data::ShutterInterval;
 use pipeline_data::vocabulary::{LookAt, Transform};
 use scene_format::{Scene, Schema};
+use spatial::straight_between;
 use std::collections::BTreeMap;
 
 /// Most intervals between two keys.
@@ -150,7 +151,7 @@ impl Clock<'_> {
 fn without_needless(keys: Vec<DAffine3>) -> Vec<DAffine3> {
     let (first, last) = (keys[0], keys[keys.len() - 1]);
     let share = |i: usize| i as f64 / (keys.len() - 1) as f64;
-    let straight = |i: usize| deviates(&mix(&first, &last, share(i)), &keys[i], &first, &last) <= 1e-9;
+    let straight = |i: usize| deviates(&straight_between(&first, &last, share(i)), &keys[i], &first, &last) <= 1e-9;
     if (1..keys.len() - 1).all(straight) {
         vec![first, last]
     } else {
@@ -162,16 +163,11 @@ fn is_straight(before: &Worlds, between: &Worlds, after: &Worlds) -> bool {
     between
         .iter()
         .all(|(row, exact)| match (before.get(row), after.get(row)) {
-            (Some(before), Some(after)) => deviates(&mix(before, after, 0.5), exact, before, after) <= TOLERANCE,
+            (Some(before), Some(after)) => {
+                deviates(&straight_between(before, after, 0.5), exact, before, after) <= TOLERANCE
+            }
             _ => true,
         })
-}
-
-fn mix(a: &DAffine3, b: &DAffine3, share: f64) -> DAffine3 {
-    DAffine3 {
-        matrix3: a.matrix3 * (1.0 - share) + b.matrix3 * share,
-        translation: a.translation * (1.0 - share) + b.translation * share,
-    }
 }
 
 /// How far two placements are apart, in units of the prim's own size and of the way from `before` to `after`.

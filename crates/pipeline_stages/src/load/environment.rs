@@ -1,4 +1,5 @@
-use super::import::{read, shown_path};
+use super::import::shown_path;
+use super::textures::read_picture;
 use bevy_ecs::prelude::*;
 use pipeline_core::Report;
 use pipeline_data::vocabulary::{EnvironmentLight, Findings, field_place};
@@ -26,8 +27,7 @@ pub(super) fn import_environments(
     for (index, light) in rows {
         let Some(file) = &light.file else { continue };
         let path = Path::new(&file.0);
-        let read = read(path, limits.file_bytes()).map_err(|error| error.to_string());
-        let decoded = read.and_then(|bytes| {
+        let decoded = read_picture(path, &limits).and_then(|bytes| {
             mix_hash(&mut composed.0.hash, "environment", &bytes);
             decode(&bytes, &limits).map_err(|error| error.to_string())
         });

@@ -165,7 +165,8 @@ impl Wanted {
     }
 }
 
-fn read_picture(path: &Path, limits: &PictureLimits) -> Result<Vec<u8>, String> {
+/// Reads the bytes of a picture, as many as any within the limits has.
+pub(super) fn read_picture(path: &Path, limits: &PictureLimits) -> Result<Vec<u8>, String> {
     let most = limits.file_bytes();
     let bytes = read(path, most).map_err(|error| format!("it cannot be read: {error}"))?;
     if bytes.len() as u64 > most {

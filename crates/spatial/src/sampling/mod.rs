@@ -149,10 +149,7 @@ impl SurfaceSampler {
     /// - `time`: in [0, 1] of the shutter.
     #[must_use]
     pub fn sample_area(&self, u: Vec2, time: f32) -> SurfaceSample {
-        self.sample_area_of(&self.instance.at(time), u)
-    }
-
-    fn sample_area_of(&self, pose: &Pose, u: Vec2) -> SurfaceSample {
+        let pose = &*self.instance.at(time);
         match &self.surface {
             Surface::Solid { solid, table } => {
                 let (face, parameters) = table.sample(u);
