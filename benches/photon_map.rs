@@ -13,12 +13,14 @@ use bevy_ecs::system::SystemState;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::{DAffine3, DVec3, Vec2};
 use pipeline_data::{CausticPhoton, Photon};
-use pipeline_stages::photon_map::{PhotonPool, caustic_map, store_in_pool};
+use pipeline_stages::photon_map::{PhotonPool, photon_map, store_in_pool};
 use radiometry::{Rgb, SampleStream};
 use scattering::{Bsdf, ConductorBsdf, ConductorFresnel, DiffuseBsdf, Microsurface};
 use spatial::{Geometry, Instance, RayScene, Shape};
 use std::hint::black_box;
-use transport::{EmissionSampler, LightSource, MapKinds, Material, PHOTON_STAGE, Scene, trace_photon};
+use transport::{
+    DensityFilter, DensitySettings, EmissionSampler, LightSource, MapKinds, Material, PHOTON_STAGE, Scene, trace_photon,
+};
 
 fn photons(n: usize) -> Vec<Photon> {
     (0..n as u32)
@@ -41,7 +43,7 @@ fn store(criterion: &mut Criterion) {
         let source = photons(n);
         let mut world = World::new();
         world.spawn_batch(source.iter().map(|photon| (*photon, CausticPhoton)).collect::<Vec<_>>());
-        let mut state: SystemState<PhotonPool> = SystemState::new(&mut world);
+        let mut state: SystemState<PhotonPool<CausticPhoton>> = SystemState::new(&mut world);
         group.bench_function(BenchmarkId::new("world", n), |b| {
             b.iter(|| {
                 let mut pool = state.get_mut(&mut world).expect("the query is valid");
@@ -158,7 +160,13 @@ fn memory(_: &mut Criterion) {
         photon.position = [(i % 1000) as f32, (i / 1000) as f32, 0.0];
     }
     world.spawn_batch(source.iter().map(|photon| (*photon, CausticPhoton)));
-    let map = caustic_map(&source).expect("finite photons make a tree");
+    let density = DensitySettings {
+        nearest: 50,
+        max_radius: 1.0,
+        filter: DensityFilter::Cone,
+        shrink: 1.0,
+    };
+    let map = photon_map(&source, density).expect("finite photons make a tree");
     drop(source);
     let after = resident_bytes().unwrap_or(before);
     let each = after.saturating_sub(before) as f64 / N as f64;

@@ -57,6 +57,7 @@ pub fn describe_schedules(app: &mut App) -> Result<Vec<ScheduleDescription>, Str
                 PhotonSystems::TracePhotons,
                 PhotonSystems::StorePhotons,
                 PhotonSystems::BuildPhotonMaps,
+                PhotonSystems::DeriveFromMaps,
             ]),
         )?,
         describe(
@@ -65,7 +66,7 @@ pub fn describe_schedules(app: &mut App) -> Result<Vec<ScheduleDescription>, Str
             &[
                 sets(&[R::GenerateRays]),
                 sets(&[P::PerturbFilm, P::PerturbTime, P::PerturbLens]),
-                sets(&[R::TracePaths, R::Accumulate]),
+                sets(&[R::TracePaths, R::Accumulate, R::EndPass]),
             ]
             .concat(),
         )?,

@@ -67,9 +67,7 @@ pub fn render(app: &mut App) -> Outcome {
         return Outcome::Finished;
     }
     let cancellation = world.resource::<Cancellation>().clone();
-    while world.resource::<RenderClock>().photons_pending > 0 && !cancellation.is_requested() {
-        world.run_schedule(PhotonPass);
-    }
+    run_photon_passes(world, &cancellation);
     let clock = world.resource::<RenderClock>();
     let (total, per_pass, limit) = (clock.waves_total, clock.waves_per_pass.max(1), clock.time_limit);
     let first_stop = clock.waves_done + per_pass;
@@ -89,6 +87,10 @@ pub fn render(app: &mut App) -> Outcome {
         if done >= total || out_of_time {
             break;
         }
+        run_photon_passes(world, &cancellation);
+        if cancellation.is_requested() {
+            break;
+        }
         world.run_schedule(RenderPass);
         world.resource_mut::<RenderClock>().waves_done += 1;
     }
@@ -100,6 +102,13 @@ pub fn render(app: &mut App) -> Outcome {
         (true, _) => Outcome::WriteFailed,
         (false, true) => Outcome::Interrupted,
         (false, false) => Outcome::Finished,
+    }
+}
+
+/// Runs [`PhotonPass`] until no stage wants it any more: before the first wave, and before those whose photons are new.
+fn run_photon_passes(world: &mut World, cancellation: &Cancellation) {
+    while world.resource::<RenderClock>().photons_pending > 0 && !cancellation.is_requested() {
+        world.run_schedule(PhotonPass);
     }
 }
 

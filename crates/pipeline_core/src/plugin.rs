@@ -49,6 +49,7 @@ impl Plugin for CorePlugin {
                 PhotonSystems::TracePhotons,
                 PhotonSystems::StorePhotons,
                 PhotonSystems::BuildPhotonMaps,
+                PhotonSystems::DeriveFromMaps,
             )
                 .chain(),
         )
@@ -59,6 +60,7 @@ impl Plugin for CorePlugin {
                 RenderSystems::PerturbRays,
                 RenderSystems::TracePaths,
                 RenderSystems::Accumulate,
+                RenderSystems::EndPass,
             )
                 .chain(),
         )

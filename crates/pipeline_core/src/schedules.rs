@@ -62,6 +62,8 @@ pub enum PhotonSystems {
     StorePhotons,
     /// After it, photon maps can be queried.
     BuildPhotonMaps,
+    /// After it, whatever stages compute from photon maps beforehand stands.
+    DeriveFromMaps,
 }
 
 /// The order inside [`RenderPass`].
@@ -75,6 +77,8 @@ pub enum RenderSystems {
     TracePaths,
     /// After it, the contributions of the wave are on the film.
     Accumulate,
+    /// After it, whatever changes from pass to pass has been asked for; runs after every wave.
+    EndPass,
 }
 
 /// The chain inside [`RenderSystems::PerturbRays`], so that plug-ins can share it.

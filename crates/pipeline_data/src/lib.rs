@@ -16,7 +16,9 @@ mod texture_store;
 pub mod vocabulary;
 
 pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
-pub use photon::{CausticPhoton, Photon};
+pub use photon::{
+    BuiltPhotonMaps, CausticPhoton, DirectPhoton, IndirectPhoton, Photon, PhotonDemand, PhotonMarker, ProgressivePasses,
+};
 pub use request::RenderRequest;
 pub use scene::{
     Acceleration, CameraFrame, ComposedScene, EnvironmentMaps, InstancePrims, PrimIndex, SceneOrigin, ShutterInterval,

@@ -1,9 +1,11 @@
 use bevy_ecs::component::Component;
+use bevy_ecs::resource::Resource;
 use bytemuck::{Pod, Zeroable};
 use radiometry::{Rgb, pack_direction};
+use transport::{MapKind, MapKinds, PhotonMaps};
 
 /// A photon stored where it reached a diffuse surface. Written by `photon_map`; one entity each, by the hundred
-/// thousand; 40 bytes. Its marker ([`CausticPhoton`]) says which map it belongs to.
+/// thousand; 40 bytes. Its marker, a [`PhotonMarker`], says which map it belongs to.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Photon {
@@ -36,6 +38,49 @@ impl From<transport::Deposit> for Photon {
     }
 }
 
+/// The component that says which map a photon belongs to: one table of the world, hence one photon map, a marker.
+pub trait PhotonMarker: Component + Copy + Default {
+    /// The map.
+    const KIND: MapKind;
+}
+
+/// Marks a photon that came straight from the light.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub struct DirectPhoton;
+
 /// Marks a photon that met only specular surfaces since the light.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct CausticPhoton;
+
+/// Marks a photon that met a diffuse surface since the light, or scattered in a medium.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub struct IndirectPhoton;
+
+impl PhotonMarker for DirectPhoton {
+    const KIND: MapKind = MapKind::Direct;
+}
+
+impl PhotonMarker for CausticPhoton {
+    const KIND: MapKind = MapKind::Caustic;
+}
+
+impl PhotonMarker for IndirectPhoton {
+    const KIND: MapKind = MapKind::Indirect;
+}
+
+/// Which photon maps stages read, beside what `LightTransport` says. Written by each of them in `PrepareStages`, read by
+/// `photon_map`, which comes after them.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub struct PhotonDemand(pub MapKinds);
+
+/// The photon maps, ready to be read. Written by `photon_map`; present once they are built.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct BuiltPhotonMaps(pub PhotonMaps);
+
+/// Present when the picture is the mean of passes that each have photons of their own. Written by `photon_map` before
+/// `camera` plans the waves.
+#[derive(Resource, Clone, Copy, Debug)]
+pub struct ProgressivePasses {
+    /// Samples that each pixel takes in a pass.
+    pub samples_per_pass: u32,
+}

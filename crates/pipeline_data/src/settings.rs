@@ -8,6 +8,8 @@ pub struct RenderSettings {
     pub methods: transport::Methods,
     /// Samples a pixel.
     pub samples: u32,
+    /// Passes that progressive methods make of the samples; none: one a sample.
+    pub passes: Option<u32>,
     /// Seed of all random numbers.
     pub seed: u64,
     /// Pixels of the whole film.

@@ -12,7 +12,8 @@
 //! | [`camera`] | camera rays through the reconstruction filter |
 //! | [`motion_blur`] | the time of each camera ray, and a camera that moves |
 //! | [`depth_of_field`] | camera rays through a lens |
-//! | [`photon_map`] | caustic photons: emitted, stored as entities, gathered |
+//! | [`photon_map`] | photons: emitted, stored as entities in three maps, gathered |
+//! | [`final_gather`] | indirect light by rays that read the photon maps |
 //! | [`path_tracing`] | intersection, emission, direct light, scattering |
 //! | [`image`] | film, auxiliary channels, image files and checkpoints |
 //!
@@ -30,6 +31,7 @@ use pipeline_core::Prepare;
 
 pub mod camera;
 pub mod depth_of_field;
+pub mod final_gather;
 pub mod geometry;
 pub mod image;
 pub mod load;
@@ -51,18 +53,21 @@ impl Plugin for DefaultStages {
             motion_blur::MotionBlurPlugin,
             depth_of_field::DepthOfFieldPlugin,
             photon_map::PhotonMapPlugin,
+            final_gather::FinalGatherPlugin,
             path_tracing::PathTracingPlugin,
             image::ImagePlugin,
         ));
         // These report trouble and set the clock when they prepare; the film comes first, since it is what a bad
-        // resolution fails on.
+        // resolution fails on. Photons are planned after whoever asks for them, and before the camera, which cuts the samples
+        // into passes.
         app.configure_sets(
             Prepare,
             (
                 image::ImageSystems,
+                final_gather::FinalGatherSystems,
+                photon_map::PhotonMapSystems,
                 camera::CameraSystems,
                 depth_of_field::DepthOfFieldSystems,
-                photon_map::PhotonMapSystems,
             )
                 .chain(),
         );

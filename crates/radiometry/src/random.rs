@@ -72,6 +72,19 @@ impl SampleStream {
         Self::new(seed, stage, key, round * run + number % run)
     }
 
+    /// The stream of part `number` of `count` parts that a stage splits this sample into, such as the rays of one hit.
+    ///
+    /// The parts of all samples of a domain together are one sequence: stratified within a sample and, where `count` is a
+    /// power of two, from sample to sample.
+    #[inline]
+    #[must_use]
+    pub const fn split(&self, stage: StageKey, count: u32, number: u32) -> Self {
+        Self {
+            key: hash_u64(self.key ^ stage.0),
+            index: self.index.wrapping_mul(count).wrapping_add(number),
+        }
+    }
+
     /// The sample index.
     #[inline]
     #[must_use]

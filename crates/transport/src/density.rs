@@ -49,6 +49,8 @@ pub struct DensitySettings {
     pub max_radius: f32,
     /// Weight over the disc.
     pub filter: DensityFilter,
+    /// Factor in (0, 1] for the radius that `nearest` and `max_radius` give; see [`progressive_shrink`].
+    pub shrink: f32,
 }
 
 impl DensitySettings {
@@ -58,6 +60,19 @@ impl DensitySettings {
     pub fn even_radius(nearest: u32, photons: u32, area: f64) -> f32 {
         (f64::from(nearest) * area / (std::f64::consts::PI * f64::from(photons))).sqrt() as f32
     }
+}
+
+/// By how much the radius of pass `pass` (from 0) is smaller than that of pass 0: `r²ᵢ₊₁ = r²ᵢ (i+α)/(i+1)`, counted
+/// from i = 1, with α = 2/3.
+///
+/// The mean of the passes then converges: bias and noise both fall, the root of the mean squared error as passes^(−1/3).
+///
+/// Source: Knaus and Zwicker, "Progressive Photon Mapping: A Probabilistic Approach", ACM TOG 2011, eq. 15.
+#[must_use]
+pub fn progressive_shrink(pass: u32) -> f32 {
+    const ALPHA: f64 = 2.0 / 3.0;
+    let ratio_sq: f64 = (1..=pass).map(f64::from).map(|i| (i + ALPHA) / (i + 1.0)).product();
+    ratio_sq.sqrt() as f32
 }
 
 /// What the inner loop reads of each photon, in the order of the tree.
@@ -78,6 +93,17 @@ pub struct PhotonMap {
     pub tree: PhotonTree,
     /// What they carry, by slot of the tree.
     pub columns: PhotonColumns,
+    /// How they are read.
+    pub density: DensitySettings,
+}
+
+/// What a photon map tells of a point.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// Radiance in W·m⁻²·sr⁻¹ that a vertex reflects, or irradiance in W·m⁻².
+    pub value: Rgb,
+    /// Radius in metres over which it is blurred.
+    pub radius: f32,
 }
 
 /// Memory that estimates reuse, and what the last one found; one a thread.
@@ -97,7 +123,18 @@ const ROUNDED_UP: f32 = 1.000_01;
 /// Photons further off the plane of the hit than this share of their distance belong to another surface.
 const MAX_ELEVATION: f32 = 0.3;
 /// Photons whose surface normal has a smaller cosine to that of the hit belong to another surface.
-const MIN_NORMAL_COSINE: f32 = 0.8;
+pub(crate) const MIN_NORMAL_COSINE: f32 = 0.8;
+
+/// Where an estimate is made, and which photons belong to the surface there.
+struct Site {
+    position: Vec3,
+    /// Unit, on the side that is lit.
+    normal: Vec3,
+    /// Bound on the error of the position, metres.
+    error: f32,
+    /// A surface that transmits is lit from behind as well.
+    both_sides: bool,
+}
 
 impl PhotonMap {
     /// Estimates the radiance that a vertex reflects of the photons around it.
@@ -109,65 +146,96 @@ impl PhotonMap {
     /// with every filter. Photons on other surfaces (normal, elevation over the plane, side of incidence) are neither
     /// used nor counted. Only diffuse lobes reflect.
     ///
-    /// Returns radiance in W·m⁻²·sr⁻¹; when fewer than `nearest` are in reach, all of them over π `max_radius`².
+    /// When fewer than `nearest` are in reach, all of them count over π `max_radius`².
     /// Bias: blurs over r. Cost: O(k log N), no allocation once `scratch` has grown.
     #[must_use]
-    pub fn estimate_radiance(
+    pub fn estimate_radiance(&self, vertex: &Vertex<'_>, scratch: &mut DensityScratch) -> Estimate {
+        let site = Site {
+            position: vertex.point.p,
+            normal: vertex.facing_normal(),
+            error: vertex.point.error,
+            both_sides: vertex.bsdf.transmits(),
+        };
+        match vertex.lambertian() {
+            // The same from every direction; the normals have made sure of the side.
+            Some(value) => {
+                let irradiance = self.estimate(&site, scratch, |_| Rgb::WHITE);
+                Estimate {
+                    value: irradiance.value * value,
+                    ..irradiance
+                }
+            }
+            None => self.estimate(&site, scratch, |slot| {
+                vertex.eval_diffuse_flux(unpack_direction(self.columns.direction[slot]))
+            }),
+        }
+    }
+
+    /// Estimates the irradiance on one side of a surface; as [`PhotonMap::estimate_radiance`] otherwise.
+    ///
+    /// - `normal`: unit, on the side that is asked about.
+    /// - `error`: bound on the error of `position`, metres.
+    #[must_use]
+    pub fn estimate_irradiance(
         &self,
-        vertex: &Vertex<'_>,
-        settings: &DensitySettings,
+        position: Vec3,
+        normal: Vec3,
+        error: f32,
         scratch: &mut DensityScratch,
-    ) -> Rgb {
-        let point = vertex.point;
-        let normal = vertex.facing_normal();
-        // A surface that transmits is lit from behind as well.
-        let transmits = vertex.bsdf.transmits();
-        let error_sq = point.error * point.error;
+    ) -> Estimate {
+        let site = Site {
+            position,
+            normal,
+            error,
+            both_sides: false,
+        };
+        self.estimate(&site, scratch, |_| Rgb::WHITE)
+    }
+
+    /// Adds up `factor(slot) · w · Φ` over the photons of a site, divided by the area of their disc.
+    #[inline]
+    fn estimate(&self, site: &Site, scratch: &mut DensityScratch, factor: impl Fn(usize) -> Rgb) -> Estimate {
+        let DensitySettings {
+            nearest: k,
+            max_radius,
+            filter,
+            shrink,
+        } = self.density;
+        let error_sq = site.error * site.error;
         let accept = |slot: u32, offset: Vec3, dist_sq: f32| {
-            let height = offset.dot(normal);
-            height * height <= MAX_ELEVATION * MAX_ELEVATION * dist_sq + 4.0 * error_sq && {
-                let cosine = self.columns.normal[slot as usize].dot(normal);
-                (if transmits { cosine.abs() } else { cosine }) >= MIN_NORMAL_COSINE
+            is_on_surface(offset, site.normal, dist_sq, error_sq) && {
+                let cosine = self.columns.normal[slot as usize].dot(site.normal);
+                (if site.both_sides { cosine.abs() } else { cosine }) >= MIN_NORMAL_COSINE
             }
         };
         let DensityScratch { nearest, last } = scratch;
         let bound = last.map_or(f32::INFINITY, |(place, radius)| {
-            (radius + place.distance(point.p)) * ROUNDED_UP
+            (radius + place.distance(site.position)) * ROUNDED_UP
         });
-        let mut found = self.tree.nearest_where(
-            point.p,
-            settings.nearest,
-            bound.min(settings.max_radius),
-            accept,
-            nearest,
-        );
-        if found.kth().is_none() && bound < settings.max_radius {
+        let mut found = self
+            .tree
+            .nearest_where(site.position, k, bound.min(max_radius), accept, nearest);
+        if found.kth().is_none() && bound < max_radius {
             // The last estimate was on another surface, with other photons.
-            found = self
-                .tree
-                .nearest_where(point.p, settings.nearest, settings.max_radius, accept, nearest);
+            found = self.tree.nearest_where(site.position, k, max_radius, accept, nearest);
         }
-        *last = found.kth().map(|kth| (point.p, kth.dist_sq.sqrt()));
-        let max_radius_sq = settings.max_radius * settings.max_radius;
-        let radius_sq = found.kth().map_or(max_radius_sq, |kth| kth.dist_sq);
+        *last = found.kth().map(|kth| (site.position, kth.dist_sq.sqrt()));
+        let radius_sq = found.kth().map_or(max_radius * max_radius, |kth| kth.dist_sq) * (shrink * shrink);
         if radius_sq <= 0.0 {
-            return Rgb::BLACK;
+            return Estimate::default();
         }
         let mut sum = Rgb::BLACK;
-        if let Some(value) = vertex.lambertian() {
-            // The same from every direction; the normals have made sure of the side.
-            for photon in found.inside() {
-                sum += self.columns.flux[photon.slot as usize] * settings.filter.weight(photon.dist_sq, radius_sq);
+        for photon in found.inside() {
+            if shrink < 1.0 && photon.dist_sq > radius_sq {
+                continue;
             }
-            sum *= value;
-        } else {
-            for photon in found.inside() {
-                let slot = photon.slot as usize;
-                let value = vertex.eval_diffuse_flux(unpack_direction(self.columns.direction[slot]));
-                sum += self.columns.flux[slot] * value * settings.filter.weight(photon.dist_sq, radius_sq);
-            }
+            let slot = photon.slot as usize;
+            sum += self.columns.flux[slot] * factor(slot) * filter.weight(photon.dist_sq, radius_sq);
         }
-        sum * (1.0 / (PI * radius_sq))
+        Estimate {
+            value: sum * (1.0 / (PI * radius_sq)),
+            radius: radius_sq.sqrt(),
+        }
     }
 
     /// Bytes that the map holds.
@@ -179,4 +247,11 @@ impl PhotonMap {
             + c.direction.capacity() * size_of::<u32>()
             + c.normal.capacity() * size_of::<Vec3>()
     }
+}
+
+/// True when a point `offset` away lies on the same flat surface, as far as the disc of an estimate is flat.
+#[inline]
+pub(crate) fn is_on_surface(offset: Vec3, normal: Vec3, dist_sq: f32, error_sq: f32) -> bool {
+    let height = offset.dot(normal);
+    height * height <= MAX_ELEVATION * MAX_ELEVATION * dist_sq + 4.0 * error_sq
 }

@@ -11,7 +11,8 @@
 //! - [`Material`] is what a surface is made of, and [`SurfaceInputs`] what of it changes from point to point.
 //! - [`arrive`], [`emitted_light`], [`sample_direct_light`] and [`scatter`] are one bounce of a path from the eye.
 //! - [`EmissionSampler`] and [`trace_photon`] are the life of a photon; [`PhotonMap`] estimates radiance from where
-//!   photons landed.
+//!   photons landed, [`PhotonMaps`] holds one of each [`MapKind`].
+//! - [`gather_indirect`] asks the maps what gather rays see.
 //!
 //! It deliberately has no volumes and no caches yet, and it never decides anything by thread or time.
 //!
@@ -27,26 +28,34 @@ mod camera;
 mod density;
 mod emission;
 mod frame;
+mod gather;
 mod light;
 mod medium;
 mod path;
 mod path_class;
 mod photon;
+mod photon_maps;
 mod projection;
 mod scene;
 mod textures;
 mod vertex;
+mod visible;
 
 pub use camera::Camera;
-pub use density::{DensityFilter, DensityScratch, DensitySettings, PhotonColumns, PhotonMap};
+pub use density::{
+    DensityFilter, DensityScratch, DensitySettings, Estimate, PhotonColumns, PhotonMap, progressive_shrink,
+};
 pub use emission::{EmissionSampler, EmittedPhoton};
 pub use frame::MovingFrame;
+pub use gather::{GatherMethods, gather_indirect};
 pub use light::{Environment, EnvironmentMap, LightSample, LightSource, LightTable, SpotCone};
 pub use medium::PathMedium;
-pub use path::{Path, arrive, emitted_light, sample_direct_light, scatter};
-pub use path_class::{CausticMethod, DirectMethod, Event, Layer, Methods, PathClass};
+pub use path::{Path, arrive, emitted_light, sample_direct_light, sample_direct_light_at, scatter, scatter_at};
+pub use path_class::{CausticMethod, DirectMethod, Event, IndirectMethod, Layer, Methods, PathClass};
 pub use photon::{Deposit, MapKind, MapKinds, PHOTON_STAGE, trace_photon};
+pub use photon_maps::{IrradianceMap, PhotonMaps, PhotonMapsScratch};
 pub use projection::{MAX_TARGETS, TargetSphere, cluster_targets};
 pub use scene::{Material, Scene};
 pub use textures::{Coverage, Input, NormalMap, PrincipledInputs, SurfaceInputs, TexturedBsdf, TexturedSurface};
 pub use vertex::Vertex;
+pub use visible::{landing_share, visible_targets};

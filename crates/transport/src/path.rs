@@ -129,13 +129,26 @@ pub fn sample_direct_light(
     hit: &SurfacePoint,
     mut contribute: impl FnMut(Layer, Rgb),
 ) {
-    if path.depth >= methods.max_depth {
-        return;
-    }
     let vertex = Vertex::new(scene, hit, -ray.direction, &path.medium);
-    if !vertex.bsdf.needs_light_sampling() {
+    sample_direct_light_at(scene, methods, path, ray.time, &vertex, &mut contribute);
+}
+
+/// [`sample_direct_light`] at a vertex that is known already.
+///
+/// - `time`: of the path, as that of its rays.
+#[inline]
+pub fn sample_direct_light_at(
+    scene: &Scene,
+    methods: &Methods,
+    path: &Path,
+    time: f32,
+    vertex: &Vertex<'_>,
+    mut contribute: impl FnMut(Layer, Rgb),
+) {
+    if path.depth >= methods.max_depth || !vertex.bsdf.needs_light_sampling() {
         return;
     }
+    let hit = vertex.point;
     let specular = path.class.after(Event::Specular);
     let diffuse = path.class.after(Event::Diffuse);
     let counts_specular = methods.counts_traced_light(specular);
@@ -145,7 +158,7 @@ pub fn sample_direct_light(
     }
     let u_choice = path.stream.draw_2d(path.depth, dimension::LIGHT_CHOICE);
     let u = path.stream.draw_2d(path.depth, dimension::LIGHT);
-    let Some(light) = scene.lights.sample(hit.p, ray.time, u_choice, u) else {
+    let Some(light) = scene.lights.sample(hit.p, time, u_choice, u) else {
         return;
     };
     let (mut values, pdf) = vertex.eval_and_pdf(light.wi);
@@ -186,10 +199,20 @@ pub fn sample_direct_light(
 #[inline]
 #[must_use]
 pub fn scatter(scene: &Scene, methods: &Methods, path: &mut Path, ray: &Ray, hit: &SurfacePoint) -> Option<Ray> {
+    let vertex = Vertex::new(scene, hit, -ray.direction, &path.medium);
+    scatter_at(scene, methods, path, ray.time, &vertex)
+}
+
+/// [`scatter`] at a vertex that is known already.
+///
+/// - `time`: of the path, as that of its rays.
+#[inline]
+#[must_use]
+pub fn scatter_at(scene: &Scene, methods: &Methods, path: &mut Path, time: f32, vertex: &Vertex<'_>) -> Option<Ray> {
     if path.depth >= methods.max_depth {
         return None;
     }
-    let vertex = Vertex::new(scene, hit, -ray.direction, &path.medium);
+    let hit = vertex.point;
     let u_lobe = path.stream.draw_1d(path.depth, dimension::LOBE);
     let u = path.stream.draw_2d(path.depth, dimension::DIRECTION);
     let sample = vertex.sample(u_lobe, u, Transport::Radiance)?;
@@ -212,7 +235,7 @@ pub fn scatter(scene: &Scene, methods: &Methods, path: &mut Path, ray: &Ray, hit
         path.medium.pass(scene, hit, sample.wi);
     }
     Some(Ray {
-        time: ray.time,
+        time,
         ..Ray::new(spawn_origin(hit.p, hit.error, hit.ng, sample.wi), sample.wi)
     })
 }

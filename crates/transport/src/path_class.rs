@@ -1,3 +1,4 @@
+use crate::photon::MapKind;
 use scattering::LobeClass;
 
 /// What happened at a vertex of a path.
@@ -124,6 +125,30 @@ impl PathClass {
         }
     }
 
+    /// True when nothing but S has happened: the eye still looks straight ahead, or into mirrors and through glass.
+    #[must_use]
+    pub const fn is_specular_only(self) -> bool {
+        self.0 & (FIRST_DIFFUSE | FIRST_VOLUME | AFTER_DIFFUSE | DEEP) == 0
+    }
+
+    /// True when the last event was S.
+    #[must_use]
+    pub const fn ends_as_specular(self) -> bool {
+        self.0 & LAST_SPECULAR != 0
+    }
+
+    /// True after two events or more that were D or V: a light met now is indirect light of the first of them.
+    #[must_use]
+    pub const fn is_deep(self) -> bool {
+        self.0 & DEEP != 0
+    }
+
+    /// True when a light met now would be seen as E S* D L: what a direct photon map holds.
+    #[must_use]
+    pub const fn ends_as_direct(self) -> bool {
+        self.0 & (AFTER_DIFFUSE | DEEP | LAST_SPECULAR) == AFTER_DIFFUSE
+    }
+
     /// True when a light met now would be seen as D S⁺ L: what a caustic photon map holds.
     #[must_use]
     pub const fn ends_as_caustic(self) -> bool {
@@ -136,6 +161,8 @@ impl PathClass {
 pub enum DirectMethod {
     /// Light sampling, and D-lobe hits with multiple importance sampling.
     SampleLights,
+    /// The direct photon map is read at the first D vertex.
+    PhotonMap,
     /// The layer is black.
     Off,
 }
@@ -151,6 +178,27 @@ pub enum CausticMethod {
     Off,
 }
 
+/// How indirect light is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum IndirectMethod {
+    /// Paths go on from D to D.
+    PathTrace,
+    /// The indirect photon map is read at the first D vertex.
+    PhotonMap,
+    /// Rays over the hemisphere of the first D vertex, and what the next D vertex reflects at their ends.
+    FinalGather,
+    /// The layer is black.
+    Off,
+}
+
+impl IndirectMethod {
+    /// True when paths end at their first D vertex, because another estimator knows all light that comes over a second.
+    #[must_use]
+    pub const fn replaces_paths(self) -> bool {
+        matches!(self, Self::PhotonMap | Self::FinalGather)
+    }
+}
+
 /// Which estimator serves which term of the split reflection equation, and what counts as specular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Methods {
@@ -160,8 +208,8 @@ pub struct Methods {
     pub specular: bool,
     /// Caustics.
     pub caustic: CausticMethod,
-    /// Whether indirect light is traced; black otherwise.
-    pub indirect: bool,
+    /// Indirect light.
+    pub indirect: IndirectMethod,
     /// GGX lobes up to this α are S.
     pub specular_alpha: f32,
     /// Most events on a path; paths that would have more end there.
@@ -174,7 +222,7 @@ impl Methods {
         direct: DirectMethod::SampleLights,
         specular: true,
         caustic: CausticMethod::Trace,
-        indirect: true,
+        indirect: IndirectMethod::PathTrace,
         specular_alpha: 0.05,
         max_depth: u32::MAX,
     };
@@ -186,7 +234,7 @@ impl Methods {
             Layer::Direct => self.direct != DirectMethod::Off,
             Layer::Specular => self.specular,
             Layer::Caustic => self.caustic != CausticMethod::Off,
-            Layer::Indirect => self.indirect,
+            Layer::Indirect => self.indirect != IndirectMethod::Off,
             Layer::Emission | Layer::Volume => true,
         }
     }
@@ -194,29 +242,70 @@ impl Methods {
     /// True when a traced path of this class that meets a light counts, by a hit or by light sampling.
     ///
     /// `Off` blackens its layer alone: deeper caustics are still traced then. A caustic photon map takes over every
-    /// D S⁺ L, wherever in the path it is.
+    /// D S⁺ L, wherever in the path it is; the other methods rule at the first D vertex, be it seen in a mirror.
     #[must_use]
     pub fn counts_traced_light(&self, class: PathClass) -> bool {
-        self.shows(class.layer()) && !(self.caustic == CausticMethod::PhotonMap && class.ends_as_caustic())
+        let is_read_from_a_map = class.ends_as_caustic() && self.caustic == CausticMethod::PhotonMap
+            || class.ends_as_direct() && self.direct == DirectMethod::PhotonMap
+            || class.is_deep() && self.indirect.replaces_paths();
+        self.shows(class.layer()) && !is_read_from_a_map
     }
 
-    /// The layer that a caustic photon map adds to when it is read at a D vertex that a path of class `class` reached;
-    /// `None` where it is not to be read.
+    /// The layer that a photon map adds to when it is read at a D vertex that a path of class `class` reached; `None`
+    /// where it is not to be read.
     #[must_use]
-    pub fn caustic_map_layer(&self, class: PathClass) -> Option<Layer> {
-        let layer = class.after(Event::Diffuse).after(Event::Specular).layer();
-        (self.caustic == CausticMethod::PhotonMap && self.shows(layer)).then_some(layer)
+    pub fn map_layer(&self, kind: MapKind, class: PathClass) -> Option<Layer> {
+        let at_first = class.is_specular_only();
+        let here = class.after(Event::Diffuse);
+        let (is_here, layer) = match kind {
+            MapKind::Direct => (at_first, here.layer()),
+            MapKind::Caustic => (
+                at_first || !self.indirect.replaces_paths(),
+                here.after(Event::Specular).layer(),
+            ),
+            MapKind::Indirect => (at_first, here.after(Event::Diffuse).layer()),
+        };
+        (is_here && self.reads_map(kind) && self.shows(layer)).then_some(layer)
     }
 
-    /// True when a path of this class can still contribute to anything, however it goes on.
+    /// True when [`Methods::map_layer`] gives a map a layer anywhere.
+    #[must_use]
+    pub fn reads_map(&self, kind: MapKind) -> bool {
+        match kind {
+            MapKind::Direct => self.direct == DirectMethod::PhotonMap,
+            MapKind::Caustic => self.caustic == CausticMethod::PhotonMap,
+            MapKind::Indirect => self.indirect == IndirectMethod::PhotonMap,
+        }
+    }
+
+    /// The layer that gather rays add to which start at a D vertex that a path of class `class` reached; `None` where
+    /// none start.
+    #[must_use]
+    pub fn gather_layer(&self, class: PathClass) -> Option<Layer> {
+        let layer = class.after(Event::Diffuse).after(Event::Diffuse).layer();
+        (self.indirect == IndirectMethod::FinalGather && class.is_specular_only() && self.shows(layer)).then_some(layer)
+    }
+
+    /// True when a path of this class can still contribute to anything by meeting light, however it goes on.
     #[must_use]
     pub fn may_contribute(&self, class: PathClass) -> bool {
+        if class.is_deep() {
+            return self.shows(class.layer()) && !self.indirect.replaces_paths();
+        }
         match class.layer() {
-            Layer::Specular => self.specular,
-            Layer::Indirect => self.indirect,
-            Layer::Direct => self.direct != DirectMethod::Off || self.caustic == CausticMethod::Trace || self.indirect,
-            Layer::Caustic => self.caustic == CausticMethod::Trace || self.indirect,
             Layer::Emission | Layer::Volume => true,
+            Layer::Specular => {
+                self.specular
+                    && (class.is_specular_only()
+                        || self.direct != DirectMethod::PhotonMap
+                        || self.caustic != CausticMethod::PhotonMap
+                        || !self.indirect.replaces_paths())
+            }
+            Layer::Direct | Layer::Caustic | Layer::Indirect => {
+                class.ends_as_direct() && self.direct == DirectMethod::SampleLights
+                    || self.caustic == CausticMethod::Trace
+                    || self.indirect == IndirectMethod::PathTrace
+            }
         }
     }
 }
@@ -281,21 +370,89 @@ mod tests {
         }
     }
 
+    /// Every combination of methods that shows everything.
+    fn all_methods() -> Vec<Methods> {
+        let mut all = Vec::new();
+        for direct in [DirectMethod::SampleLights, DirectMethod::PhotonMap] {
+            for caustic in [CausticMethod::PhotonMap, CausticMethod::Trace] {
+                for indirect in [
+                    IndirectMethod::PathTrace,
+                    IndirectMethod::PhotonMap,
+                    IndirectMethod::FinalGather,
+                ] {
+                    all.push(Methods {
+                        direct,
+                        caustic,
+                        indirect,
+                        ..Methods::TRACED
+                    });
+                }
+            }
+        }
+        all
+    }
+
+    /// Where a photon map is read for the path that ends in these events: the D vertex whose rest, seen from the light,
+    /// is of the map's kind.
+    fn layers_from_maps(methods: &Methods, events: &str) -> Vec<Layer> {
+        let mut found = Vec::new();
+        for (at, _) in events.match_indices('D') {
+            let kind = events[at + 1..].bytes().fold(MapKind::Direct, |kind, e| {
+                kind.after(if e == b'S' { Event::Specular } else { Event::Diffuse })
+            });
+            found.extend(methods.map_layer(kind, class_of(&events[..at])));
+            let rest = events[at + 1..].trim_start_matches('S');
+            if !rest.is_empty() {
+                found.extend(methods.gather_layer(class_of(&events[..at])));
+            }
+        }
+        found
+    }
+
     #[test]
-    fn each_caustic_is_counted_once_whatever_the_method() {
-        for caustic in [CausticMethod::PhotonMap, CausticMethod::Trace] {
-            let methods = Methods {
-                caustic,
-                ..Methods::TRACED
-            };
-            for events in all_strings(5).iter().filter(|e| class_of(e).ends_as_caustic()) {
-                let traced = methods.counts_traced_light(class_of(events));
-                let at_diffuse = &events[..events.trim_end_matches('S').len() - 1];
-                let mapped = methods.caustic_map_layer(class_of(at_diffuse));
-                assert!(traced != mapped.is_some(), "E{events}L");
+    fn each_path_is_counted_once_whatever_the_methods() {
+        for methods in all_methods() {
+            for events in all_strings(5).iter().filter(|events| !events.contains('V')) {
+                let mut counted = layers_from_maps(&methods, events);
+                if methods.counts_traced_light(class_of(events)) {
+                    counted.push(class_of(events).layer());
+                }
+                assert_eq!(counted, [class_of(events).layer()], "E{events}L under {methods:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_path_is_given_up_that_could_still_count() {
+        let mut all = all_methods();
+        for methods in all_methods() {
+            all.push(Methods {
+                direct: DirectMethod::Off,
+                ..methods
+            });
+            all.push(Methods {
+                caustic: CausticMethod::Off,
+                ..methods
+            });
+            all.push(Methods {
+                indirect: IndirectMethod::Off,
+                ..methods
+            });
+            all.push(Methods {
+                specular: false,
+                ..methods
+            });
+        }
+        let endings = all_strings(3);
+        for methods in all {
+            for events in all_strings(4).iter().filter(|events| !events.contains('V')) {
+                let counts = |more: &String| {
+                    !more.contains('V') && methods.counts_traced_light(class_of(&format!("{events}{more}")))
+                };
+                let could = endings.iter().any(counts);
                 assert!(
-                    mapped.is_none_or(|layer| layer == class_of(events).layer()),
-                    "E{events}L"
+                    methods.may_contribute(class_of(events)) || !could,
+                    "E{events} under {methods:?}"
                 );
             }
         }
@@ -319,7 +476,7 @@ mod tests {
                     Layer::Caustic
                 }
                 _ => {
-                    methods.indirect = false;
+                    methods.indirect = IndirectMethod::Off;
                     Layer::Indirect
                 }
             };

@@ -24,6 +24,22 @@ pub enum MapKind {
 }
 
 impl MapKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::Direct, Self::Caustic, Self::Indirect];
+
+    /// Number of kinds.
+    pub const COUNT: usize = Self::ALL.len();
+
+    /// Lower-case name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Direct => "direct",
+            Self::Caustic => "caustic",
+            Self::Indirect => "indirect",
+        }
+    }
+
     /// The kind after one more event.
     #[must_use]
     pub const fn after(self, event: Event) -> Self {
@@ -52,6 +68,23 @@ impl MapKinds {
         caustic: true,
         indirect: false,
     };
+
+    /// These and one kind more.
+    #[must_use]
+    pub const fn with(mut self, kind: MapKind) -> Self {
+        match kind {
+            MapKind::Direct => self.direct = true,
+            MapKind::Caustic => self.caustic = true,
+            MapKind::Indirect => self.indirect = true,
+        }
+        self
+    }
+
+    /// True when no photon is wanted.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        !(self.direct || self.caustic || self.indirect)
+    }
 
     /// True when photons of this kind are wanted.
     #[must_use]

@@ -94,8 +94,15 @@ impl<'a> Vertex<'a> {
     #[inline]
     #[must_use]
     pub fn lambertian(&self) -> Option<Rgb> {
+        self.diffuse_value().filter(|_| self.cos_normals >= FLAT)
+    }
+
+    /// albedo/π where the surface scatters by one Lambertian lobe, however its normals are shaded; `None` elsewhere.
+    #[inline]
+    #[must_use]
+    pub fn diffuse_value(&self) -> Option<Rgb> {
         match &self.bsdf {
-            Bsdf::Diffuse(diffuse) if self.cos_normals >= FLAT => Some(diffuse.albedo() * std::f32::consts::FRAC_1_PI),
+            Bsdf::Diffuse(diffuse) => Some(diffuse.albedo() * std::f32::consts::FRAC_1_PI),
             _ => None,
         }
     }

@@ -19,7 +19,8 @@ pub struct Render {
     pub max_depth: Option<u32>,
     /// Chooses the random numbers: another seed, another noise, the same picture.
     pub seed: u64,
-    /// Passes of progressive methods; none: as many as `samples`.
+    /// Passes of progressive photon maps, each with photons of its own and its share of the samples; none: as many as
+    /// `samples`, one sample a pass. A pass takes 1,024 samples at most.
     #[reflect(@Range::at_least(1.0))]
     pub passes: Option<u32>,
 }
@@ -74,6 +75,8 @@ pub enum DirectMethod {
     /// Shadow rays to sampled lights.
     #[default]
     SampleLights,
+    /// Photons straight from the lights: blurs the edges of shadows. To look at a photon map, or for a first guess.
+    PhotonMap,
     /// Not at all.
     Off,
 }
@@ -82,6 +85,7 @@ impl From<DirectMethod> for transport::DirectMethod {
     fn from(method: DirectMethod) -> Self {
         match method {
             DirectMethod::SampleLights => Self::SampleLights,
+            DirectMethod::PhotonMap => Self::PhotonMap,
             DirectMethod::Off => Self::Off,
         }
     }
@@ -125,6 +129,21 @@ pub enum IndirectMethod {
     /// Paths that go on from surface to surface.
     #[default]
     PathTrace,
+    /// Photons that came over matt surfaces, seen directly: fast, and blotchy with few photons.
+    PhotonMap,
+    /// Rays over the hemisphere that read all photon maps where they end: smooth, and sharp in corners.
+    FinalGather,
     /// Not at all.
     Off,
+}
+
+impl From<IndirectMethod> for transport::IndirectMethod {
+    fn from(method: IndirectMethod) -> Self {
+        match method {
+            IndirectMethod::PathTrace => Self::PathTrace,
+            IndirectMethod::PhotonMap => Self::PhotonMap,
+            IndirectMethod::FinalGather => Self::FinalGather,
+            IndirectMethod::Off => Self::Off,
+        }
+    }
 }

@@ -2,7 +2,7 @@ use super::{BATCH_PATHS, PATH_STAGE, WAVE_PATHS, WavePlan};
 use bevy_ecs::prelude::*;
 use glam::Vec2;
 use pipeline_core::{RenderClock, Report, record_items};
-use pipeline_data::{CameraFrame, FilmBatch, FilmSums, PathStream, RayStream, RenderSettings};
+use pipeline_data::{CameraFrame, FilmBatch, FilmSums, PathStream, ProgressivePasses, RayStream, RenderSettings};
 use rayon::prelude::*;
 use transport::Path;
 
@@ -11,6 +11,7 @@ pub(super) fn plan_waves(
     mut commands: Commands,
     settings: Option<Res<RenderSettings>>,
     film: Option<Res<FilmSums>>,
+    progressive: Option<Res<ProgressivePasses>>,
     mut clock: ResMut<RenderClock>,
     report: Res<Report>,
 ) {
@@ -21,7 +22,10 @@ pub(super) fn plan_waves(
     let pixels = size.x as usize * size.y as usize;
     // A power of two of samples keeps each pixel's share of a pass an aligned run of its sequences.
     let fitting = (WAVE_PATHS / pixels.max(1)).clamp(1, BATCH_PATHS);
-    let samples_per_pass = (1_u32 << fitting.ilog2()).min(settings.samples.max(1).next_power_of_two());
+    let samples_per_pass = match progressive {
+        Some(passes) => passes.samples_per_pass,
+        None => (1_u32 << fitting.ilog2()).min(settings.samples.max(1).next_power_of_two()),
+    };
     let pixels_per_batch = (BATCH_PATHS / samples_per_pass as usize).max(1);
     let batches_per_wave = WAVE_PATHS / BATCH_PATHS;
     let plan = WavePlan {

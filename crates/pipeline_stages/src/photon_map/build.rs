@@ -1,29 +1,23 @@
-use super::PhotonRun;
+use super::run::PhotonRun;
 use bevy_ecs::prelude::*;
 use glam::Vec3;
-use pipeline_core::{Report, record_items};
-use pipeline_data::{CausticPhoton, Photon};
+use pipeline_core::{RenderClock, Report, record_items};
+use pipeline_data::{BuiltPhotonMaps, Photon, PhotonMarker};
 use radiometry::unpack_direction;
 use spatial::{PhotonTree, PhotonTreeError};
 use transport::{DensitySettings, PhotonColumns, PhotonMap};
 
-/// The caustic photon map, ready to be read. Written by `build_photon_map`, read by `gather_caustics`.
-#[derive(Resource)]
-pub struct CausticMap {
-    /// The photons.
-    pub map: PhotonMap,
-    /// How they are gathered.
-    pub density: DensitySettings,
-}
-
-/// Builds the tree over the photon entities and copies what the estimate reads into its order.
-pub(super) fn build_photon_map(
-    mut commands: Commands,
+/// Builds the tree over the photon entities of one map and copies what the estimate reads into its order.
+pub(super) fn build_photon_map<M: PhotonMarker>(
     run: Res<PhotonRun>,
-    photons: Query<&Photon, With<CausticPhoton>>,
+    photons: Query<&Photon, With<M>>,
+    mut built: ResMut<BuiltPhotonMaps>,
     mut report: ResMut<Report>,
 ) {
-    // All photons of one map are of one archetype, hence in one column.
+    let Some(map) = run.landed.iter().find(|map| map.plan.kind == M::KIND) else {
+        return;
+    };
+    // All photons of one map are of one archetype, hence in one column, unless a plug-in has marked some of them.
     let columns: Vec<&[Photon]> = photons.contiguous_iter().map(Iterator::collect).unwrap_or_default();
     let joined;
     let photons: &[Photon] = match columns.as_slice() {
@@ -34,21 +28,31 @@ pub(super) fn build_photon_map(
         }
     };
     record_items(photons.len());
-    match caustic_map(photons) {
-        Ok(map) => {
-            let density = run.density;
-            commands.insert_resource(CausticMap { map, density });
+    match photon_map(photons, map.density(run.pass)) {
+        Ok(map) => built.0.insert(M::KIND, map),
+        Err(error) => {
+            let kind = M::KIND.name();
+            report.warn(format!("warning[photon-map]: there is no {kind} photon map: {error}"));
         }
-        Err(error) => report.warn(format!("warning[photon-map]: there is no caustic photon map: {error}")),
     }
+}
+
+/// Makes the place that maps are put in. Until they are there, nothing may read it.
+pub(super) fn make_room_for_maps(mut commands: Commands) {
+    commands.init_resource::<BuiltPhotonMaps>();
+}
+
+/// Ends the photons of a pass.
+pub(super) fn finish_photons(mut commands: Commands, mut clock: ResMut<RenderClock>) {
     commands.remove_resource::<PhotonRun>();
+    clock.photons_pending -= 1;
 }
 
 /// Builds the tree over photons and copies what an estimate reads into its order.
 ///
 /// # Errors
 /// A photon whose position is not finite, or more photons than a tree can hold.
-pub fn caustic_map(photons: &[Photon]) -> Result<PhotonMap, PhotonTreeError> {
+pub fn photon_map(photons: &[Photon], density: DensitySettings) -> Result<PhotonMap, PhotonTreeError> {
     let tree = PhotonTree::from_fn(photons.len(), |row| Vec3::from_array(photons[row].position))?;
     let rows = || tree.rows().iter().map(|row| &photons[*row as usize]);
     let columns = PhotonColumns {
@@ -56,5 +60,5 @@ pub fn caustic_map(photons: &[Photon]) -> Result<PhotonMap, PhotonTreeError> {
         direction: rows().map(|p| p.direction).collect(),
         normal: rows().map(|p| unpack_direction(p.normal)).collect(),
     };
-    Ok(PhotonMap { tree, columns })
+    Ok(PhotonMap { tree, columns, density })
 }

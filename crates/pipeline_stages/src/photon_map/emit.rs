@@ -1,18 +1,34 @@
-use super::{BATCH_PATHS, PhotonRun, UNIFORM_SHARE};
+use super::run::{PhotonPlan, PhotonRun};
 use bevy_ecs::prelude::*;
-use pipeline_core::record_items;
-use pipeline_data::{RenderSettings, TransportScene};
-use radiometry::SampleStream;
-use rayon::prelude::*;
-use transport::{EmissionSampler, PHOTON_STAGE};
+use pipeline_core::{Progress, RenderClock, record_items};
+use pipeline_data::{BuiltPhotonMaps, TransportScene};
+
+/// Begins the photons of a pass.
+///
+/// The pass is that of the render, so that one that was resumed, or that another machine renders, has the same photons.
+pub(super) fn begin_photons(
+    mut commands: Commands,
+    plan: Res<PhotonPlan>,
+    clock: Res<RenderClock>,
+    built: Option<Res<BuiltPhotonMaps>>,
+    progress: Res<Progress>,
+) {
+    let pass = (clock.waves_done / clock.waves_per_pass.max(1)) as u32;
+    if built.is_none() {
+        let maps = plan.emissions.iter().flat_map(|emission| &emission.maps);
+        progress.start("photons", "photons", maps.map(|map| map.wanted).sum());
+    }
+    commands.insert_resource(PhotonRun::new(&plan, pass, built.is_none()));
+}
 
 /// Emits the next batch of photons.
-pub(super) fn emit_photons(mut run: ResMut<PhotonRun>, scene: Res<TransportScene>, settings: Res<RenderSettings>) {
-    let sampler = EmissionSampler::aimed(&scene.0.lights, scene.0.specular_targets(), UNIFORM_SHARE);
-    let first = run.emitted;
-    (first..first + BATCH_PATHS)
-        .into_par_iter()
-        .map(|path| sampler.emit(&SampleStream::new(settings.seed, PHOTON_STAGE, 0, path)))
-        .collect_into_vec(&mut run.batch);
-    record_items(run.batch.len());
+pub(super) fn emit_photons(mut run: ResMut<PhotonRun>, plan: Res<PhotonPlan>, scene: Res<TransportScene>) {
+    let pass = run.pass;
+    let Some(emission) = run.emissions.front_mut() else {
+        return;
+    };
+    emission.batch = emission
+        .aim
+        .emit_batch(&scene.0.lights, plan.seed, pass, emission.emitted);
+    record_items(emission.batch.len());
 }

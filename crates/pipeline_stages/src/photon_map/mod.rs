@@ -1,23 +1,31 @@
-//! The caustic photon map: photons that met only specular surfaces, stored where they land.
+//! Photon maps: photons from the lights, stored where they land on diffuse surfaces and gathered there.
 //!
-//! Scene: `"/Render": Def(CausticPhotonMap: (photons: 50000, nearest: 50), LightTransport: (caustic: PhotonMap))`
+//! Scene: `"/Render": Def(CausticPhotonMap: (photons: 50000, nearest: 50), LightTransport: (caustic: PhotonMap))`, and
+//! likewise `DirectPhotonMap` with `direct: PhotonMap`, `IndirectPhotonMap` with `indirect: PhotonMap`.
 //! Sets: `PrepareStages` (`plan_photons`), `EmitPhotons`, `TracePhotons`, `StorePhotons`, `BuildPhotonMaps`, `LookUp`
-//! (`gather_caustics`).
-//! Reads the transport scene and the settings. Writes photon entities ([`Photon`] with
-//! [`CausticPhoton`](pipeline_data::CausticPhoton)), the tree over them, and contributions.
+//! (`gather_photons`), `EndPass` (`ask_for_photons`).
+//! Reads the transport scene, the settings and what other stages demand. Writes photon entities ([`Photon`](pipeline_data::Photon) with a
+//! [`PhotonMarker`](pipeline_data::PhotonMarker)), the maps over them, and contributions.
 //! Counters: `photon_map/photons emitted`, `photon_map/photons stored`, `photon_map/lookups`.
 //!
-//! Emission is aimed at the specular objects, in fixed batches, until enough photons are stored. All of the photons of
-//! the batches are kept, so that no photon is favoured. A photon's numbers depend on its path number alone and photons are
-//! stored in (path, bounce) order: the map is the same whatever the threads.
+//! What has happened to a photon since its light decides its map: nothing, specular events alone, or any diffuse one.
+//! Caustic photons are emitted by themselves, aimed at the specular objects; direct and indirect ones share their paths, and
+//! are aimed at what the camera sees where few of them would land there. Emission goes on in fixed batches until enough
+//! photons are stored. All of the photons of the batches are kept, so that no photon is favoured. A photon's numbers depend
+//! on its pass and path number alone and photons are stored in (path, bounce) order: the map is the same whatever the threads.
 //!
-//! Limits: one map for all passes; bias by blur over the radius, at edges, and where surfaces curve within it.
-//! Source: Jensen, "Global Illumination using Photon Maps", EGWR 1996.
+//! Progressive maps are made anew for every pass, from a number of paths that a first batch decides, and read with a radius
+//! that shrinks with the number of the pass: passes can be resumed and shared out.
+//!
+//! Limits: bias by blur over the radius, at edges, and where surfaces curve within it. Photons have no time.
+//! Source: Jensen, "Global Illumination using Photon Maps", EGWR 1996; Knaus and Zwicker, ACM TOG 30(3), 2011.
 
 mod build;
 mod emit;
 mod gather;
 mod plan;
+mod repeat;
+mod run;
 mod settings;
 mod store;
 #[cfg(test)]
@@ -25,82 +33,40 @@ mod tests;
 mod trace;
 
 use bevy_app::{App, Plugin};
-use bevy_ecs::resource::Resource;
-use bevy_ecs::schedule::common_conditions::resource_exists;
+use bevy_ecs::schedule::common_conditions::{not, resource_exists};
 use bevy_ecs::schedule::{IntoScheduleConfigs, SystemSet};
 use bevy_ecs::system::Res;
-use pipeline_core::{Bounce, BounceSystems, PhotonPass, PhotonSystems, Prepare, PrepareSystems};
-use pipeline_data::{Contributions, Photon};
-use transport::{DensitySettings, EmittedPhoton};
+use pipeline_core::{
+    Bounce, BounceSystems, PhotonPass, PhotonSystems, Prepare, PrepareSystems, RenderPass, RenderSystems,
+};
+use pipeline_data::{BuiltPhotonMaps, CausticPhoton, Contributions, DirectPhoton, IndirectPhoton, PhotonDemand};
+use run::{PhotonPlan, PhotonRun};
 
-pub use build::{CausticMap, caustic_map};
-pub use gather::CausticContribution;
-pub use settings::{CausticPhotonMap, PhotonFilter};
+pub use build::photon_map;
+pub use gather::PhotonContribution;
+pub use settings::{CausticPhotonMap, DirectPhotonMap, IndirectPhotonMap, PhotonFilter, PhotonMapSettings};
 pub use store::{PhotonPool, store_in_pool};
 
 /// Where this stage works.
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct PhotonMapSystems;
 
-/// Photon paths emitted by one run of `PhotonPass`.
-const BATCH_PATHS: u32 = 1 << 14;
-
-/// At most this many times the wanted photons are emitted.
-const MAX_EMITTED_RATIO: u64 = 100;
-
-/// Share of the photons that leaves uniformly, aimed at nothing: the defence against bad aim.
-const UNIFORM_SHARE: f32 = 0.1;
-
-/// The photons in the making. Present from `plan_photons` until the map is built.
-#[derive(Resource)]
-struct PhotonRun {
-    /// Photons to store.
-    wanted: u64,
-    /// Paths emitted so far.
-    emitted: u32,
-    /// The batch that is under way.
-    batch: Vec<Option<EmittedPhoton>>,
-    /// Photons that landed, in (path, bounce) order; flux not yet divided by the number emitted.
-    landed: Vec<Photon>,
-    /// Set by `trace_photons` after the last batch.
-    is_over: bool,
-    /// How the map is read.
-    density: DensitySettings,
+fn photons_have_landed(run: Option<Res<PhotonRun>>) -> bool {
+    run.is_some_and(|run| run.is_over())
 }
 
-impl PhotonRun {
-    fn new(wanted: u64, density: DensitySettings) -> Self {
-        Self {
-            wanted,
-            emitted: 0,
-            batch: Vec::new(),
-            landed: Vec::new(),
-            is_over: false,
-            density,
-        }
-    }
-
-    /// True when enough photons have landed, or too many were emitted for more to be worth waiting for.
-    fn has_enough(&self) -> bool {
-        let most = self
-            .wanted
-            .saturating_mul(MAX_EMITTED_RATIO)
-            .min(u64::from(u32::MAX - BATCH_PATHS));
-        self.landed.len() as u64 >= self.wanted || u64::from(self.emitted) >= most
-    }
-}
-
-fn emission_is_over(run: Option<Res<PhotonRun>>) -> bool {
-    run.is_some_and(|run| run.is_over)
-}
-
-/// Adds the caustic photon map.
+/// Adds the photon maps.
 pub struct PhotonMapPlugin;
 
 impl Plugin for PhotonMapPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<CausticPhotonMap>();
-        Contributions::register::<CausticContribution>(app);
+        app.register_type::<DirectPhotonMap>()
+            .register_type::<CausticPhotonMap>()
+            .register_type::<IndirectPhotonMap>()
+            .init_resource::<PhotonDemand>();
+        Contributions::register::<PhotonContribution<DirectPhoton>>(app);
+        Contributions::register::<PhotonContribution<CausticPhoton>>(app);
+        Contributions::register::<PhotonContribution<IndirectPhoton>>(app);
         app.add_systems(
             Prepare,
             plan::plan_photons
@@ -110,24 +76,51 @@ impl Plugin for PhotonMapPlugin {
         .add_systems(
             PhotonPass,
             (
-                emit::emit_photons.in_set(PhotonSystems::EmitPhotons),
+                (
+                    emit::begin_photons.run_if(not(resource_exists::<PhotonRun>)),
+                    emit::emit_photons,
+                )
+                    .chain()
+                    .in_set(PhotonSystems::EmitPhotons),
                 trace::trace_photons.in_set(PhotonSystems::TracePhotons),
-                store::store_photons
+                (
+                    store::store_photons::<DirectPhoton>,
+                    store::store_photons::<CausticPhoton>,
+                    store::store_photons::<IndirectPhoton>,
+                )
+                    .chain()
                     .in_set(PhotonSystems::StorePhotons)
-                    .run_if(emission_is_over),
-                build::build_photon_map
+                    .run_if(photons_have_landed),
+                (
+                    build::make_room_for_maps.run_if(not(resource_exists::<BuiltPhotonMaps>)),
+                    build::build_photon_map::<DirectPhoton>,
+                    build::build_photon_map::<CausticPhoton>,
+                    build::build_photon_map::<IndirectPhoton>,
+                    build::finish_photons,
+                )
+                    .chain()
                     .in_set(PhotonSystems::BuildPhotonMaps)
-                    .run_if(emission_is_over),
+                    .run_if(photons_have_landed),
             )
                 .in_set(PhotonMapSystems)
-                .run_if(resource_exists::<PhotonRun>),
+                .run_if(resource_exists::<PhotonPlan>),
+        )
+        .add_systems(
+            RenderPass,
+            repeat::ask_for_photons
+                .in_set(RenderSystems::EndPass)
+                .in_set(PhotonMapSystems)
+                .run_if(resource_exists::<PhotonPlan>),
         )
         .add_systems(
             Bounce,
-            gather::gather_caustics
+            (
+                gather::gather_photons::<DirectPhoton>.run_if(gather::is_read::<DirectPhoton>),
+                gather::gather_photons::<CausticPhoton>.run_if(gather::is_read::<CausticPhoton>),
+                gather::gather_photons::<IndirectPhoton>.run_if(gather::is_read::<IndirectPhoton>),
+            )
                 .in_set(BounceSystems::LookUp)
-                .in_set(PhotonMapSystems)
-                .run_if(resource_exists::<CausticMap>),
+                .in_set(PhotonMapSystems),
         );
     }
 }

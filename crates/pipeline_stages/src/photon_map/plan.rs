@@ -1,91 +1,251 @@
-use super::{CausticMap, CausticPhotonMap, PhotonRun};
+use super::run::{Aim, EmissionPlan, MapPlan, PhotonPlan, PhotonRun};
+use super::settings::{CausticPhotonMap, DirectPhotonMap, IndirectPhotonMap, PhotonMapSettings};
 use bevy_ecs::prelude::*;
-use pipeline_core::{Progress, RenderClock};
+use bevy_ecs::system::SystemParam;
+use glam::Vec2;
+use pipeline_core::RenderClock;
 use pipeline_data::vocabulary::{Findings, SceneReport, component_place, field_place};
-use pipeline_data::{PrimIndex, RenderSettings, TransportScene};
-use scene_format::Diagnostic;
-use transport::{CausticMethod, DensitySettings};
+use pipeline_data::{
+    BuiltPhotonMaps, CameraFrame, PhotonDemand, PrimIndex, ProgressivePasses, RenderSettings, TransportScene,
+};
+use radiometry::StageKey;
+use scene_format::{Diagnostic, Scene};
+use spatial::Ray;
+use transport::{DensitySettings, MapKind, MapKinds, PHOTON_STAGE, landing_share, visible_targets};
 
-/// Name of the settings component, as it stands in scene files.
-const COMPONENT: &str = "CausticPhotonMap";
 /// Bytes a photon takes at the peak, while the map is built; afterwards about 150.
 const PEAK_BYTES_PER_PHOTON: u64 = 200;
 /// More memory than this for photons is refused.
 const MOST_BYTES: u64 = 8 << 30;
 
-/// Decides whether photons are needed, and how they will be gathered.
+/// Most samples that each pixel takes in a pass of a progressive render; more passes are made where there are more.
+const MOST_SAMPLES_PER_PASS: u32 = 1024;
+
+/// Share of the caustic photons that leaves uniformly, aimed at nothing.
+const UNIFORM_SHARE_CAUSTIC: f32 = 0.1;
+/// The same of photons that are aimed at what is visible. More than of caustic ones, since light that comes over surfaces
+/// out of sight counts as well.
+const UNIFORM_SHARE_VISIBLE: f32 = 0.25;
+/// Photons are aimed at what is visible where fewer of them than this land there by themselves.
+const LANDS_BY_ITSELF: f32 = 0.5;
+/// Rays along each side of the film that ask what is visible.
+const SIGHT_RAYS: u32 = 48;
+
+/// The settings of all three maps.
+#[derive(SystemParam)]
+pub(super) struct MapPrims<'w, 's> {
+    direct: Query<'w, 's, (&'static PrimIndex, &'static DirectPhotonMap)>,
+    caustic: Query<'w, 's, (&'static PrimIndex, &'static CausticPhotonMap)>,
+    indirect: Query<'w, 's, (&'static PrimIndex, &'static IndirectPhotonMap)>,
+}
+
+/// Decides which photons are needed, and how they will be gathered.
 ///
-/// Without use for it (another method is chosen, nothing specular or nothing diffuse exists) there is no map, and no
-/// system of this stage runs.
+/// Without use for them (other methods are chosen, nothing diffuse exists) there is no map, and no system of this stage runs.
 pub(super) fn plan_photons(
     mut commands: Commands,
     settings: Option<Res<RenderSettings>>,
     scene: Option<Res<TransportScene>>,
-    prims: Query<(&PrimIndex, &CausticPhotonMap)>,
-    progress: Res<Progress>,
+    camera: Option<Res<CameraFrame>>,
+    mut demand: ResMut<PhotonDemand>,
+    prims: MapPrims,
     mut clock: ResMut<RenderClock>,
     report: Option<SceneReport<'_>>,
 ) {
+    commands.remove_resource::<PhotonPlan>();
     commands.remove_resource::<PhotonRun>();
-    commands.remove_resource::<CausticMap>();
+    commands.remove_resource::<BuiltPhotonMaps>();
+    commands.remove_resource::<ProgressivePasses>();
     clock.photons_pending = 0;
-    let (Some(settings), Some(scene), Some(mut report)) = (settings, scene, report) else {
+    let demand = std::mem::take(&mut *demand).0;
+    let (Some(settings), Some(scene), Some(camera), Some(mut report)) = (settings, scene, camera, report) else {
         return;
     };
     let mut findings = Findings::default();
-    let map = chosen_settings(&prims, &settings, &report, &mut findings);
-    let bytes = u64::from(map.photons) * PEAK_BYTES_PER_PHOTON;
-    if bytes > MOST_BYTES {
-        let message = format!(
-            "{} photons take about {} GiB of memory; at most {} GiB are used",
-            map.photons,
-            bytes >> 30,
-            MOST_BYTES >> 30
+    let wanted = wanted_maps(&settings, demand);
+    let maps = chosen_maps(&prims, wanted, &settings, &scene.0, report.scene(), &mut findings);
+    refuse_too_many(&maps, &settings, report.scene(), &mut findings);
+    let is_progressive = maps.iter().any(|map| map.batches_per_pass.is_some());
+    if settings.passes.is_some() && !is_progressive {
+        let finding = Diagnostic::warning(
+            "unused-settings",
+            "`Render.passes` has no effect: no photon map is `progressive`",
         );
-        let finding = Diagnostic::error("too-many-photons", message)
-            .note(format!("at most {} photons", MOST_BYTES / PEAK_BYTES_PER_PHOTON));
-        findings.push_at(
-            field_place(report.scene(), settings.render_prim, COMPONENT, &["photons"]),
-            finding,
-        );
+        let place = field_place(report.scene(), settings.render_prim, "Render", &["passes"]);
+        findings.push_at(place, finding);
     }
-    let has_use = settings.methods.caustic == CausticMethod::PhotonMap
-        && !scene.0.specular_targets().is_empty()
-        && scene.0.diffuse_area() > 0.0
-        && !scene.0.lights.is_empty();
-    if has_use && !findings.has_error() {
-        let even_radius = DensitySettings::even_radius(map.nearest, map.photons, scene.0.diffuse_area());
-        let density = DensitySettings {
-            nearest: map.nearest as usize,
-            max_radius: map.max_radius.unwrap_or(even_radius),
-            filter: map.filter.into(),
-        };
-        commands.insert_resource(PhotonRun::new(u64::from(map.photons), density));
-        clock.photons_pending += 1;
-        progress.start("photons", "photons", u64::from(map.photons));
+    if !findings.has_error() && !maps.is_empty() && !scene.0.lights.is_empty() {
+        let plan = plan(maps, &settings, &scene.0, &camera);
+        commands.insert_resource(plan);
+        clock.photons_pending = 1;
+        if is_progressive {
+            let passes = settings.passes.unwrap_or(settings.samples).max(1);
+            commands.insert_resource(ProgressivePasses {
+                samples_per_pass: settings.samples.div_ceil(passes).min(MOST_SAMPLES_PER_PASS),
+            });
+        }
     }
     report.file(findings);
 }
 
-/// The settings on the render prim, or the defaults; warns of settings that have no effect.
-fn chosen_settings(
-    prims: &Query<(&PrimIndex, &CausticPhotonMap)>,
+/// The maps that methods read, or that other stages ask for.
+fn wanted_maps(settings: &RenderSettings, demand: MapKinds) -> MapKinds {
+    let read = |kind: &MapKind| settings.methods.reads_map(*kind);
+    MapKind::ALL.into_iter().filter(read).fold(demand, MapKinds::with)
+}
+
+/// The maps that are wanted and can hold anything, with the settings of the render prim or the defaults. Warns of settings
+/// without effect.
+fn chosen_maps(
+    prims: &MapPrims<'_, '_>,
+    wanted: MapKinds,
     settings: &RenderSettings,
-    report: &SceneReport<'_>,
+    scene: &transport::Scene,
+    composed: &Scene,
     findings: &mut Findings,
-) -> CausticPhotonMap {
-    let mut chosen = CausticPhotonMap::default();
+) -> Vec<MapPlan> {
+    let kinds = [
+        chosen(&prims.direct, wanted, settings, scene, composed, findings),
+        chosen(&prims.caustic, wanted, settings, scene, composed, findings),
+        chosen(&prims.indirect, wanted, settings, scene, composed, findings),
+    ];
+    kinds.into_iter().flatten().collect()
+}
+
+fn chosen<S: PhotonMapSettings>(
+    prims: &Query<(&PrimIndex, &S)>,
+    wanted: MapKinds,
+    settings: &RenderSettings,
+    scene: &transport::Scene,
+    composed: &Scene,
+    findings: &mut Findings,
+) -> Option<MapPlan> {
+    let mut chosen = S::default();
     for (prim, written) in prims {
         let unused = if prim.0 != settings.render_prim {
-            "`CausticPhotonMap` stands on a prim that carries no `Render`; it has no effect there"
-        } else if settings.methods.caustic != CausticMethod::PhotonMap {
-            "`CausticPhotonMap` has no effect: `LightTransport.caustic` is not `PhotonMap`"
+            format!(
+                "`{}` stands on a prim that carries no `Render`; it has no effect there",
+                S::NAME
+            )
+        } else if !wanted.wants(S::KIND) {
+            format!(
+                "`{}` has no effect: no method of `LightTransport` reads this map",
+                S::NAME
+            )
         } else {
             chosen = written.clone();
             continue;
         };
-        let place = component_place(report.scene(), prim.0, COMPONENT);
+        let place = component_place(composed, prim.0, S::NAME);
         findings.push_at(place, Diagnostic::warning("unused-settings", unused));
     }
-    chosen
+    let can_hold = scene.diffuse_area() > 0.0 && (S::KIND != MapKind::Caustic || !scene.specular_targets().is_empty());
+    if !wanted.wants(S::KIND) || !can_hold {
+        return None;
+    }
+    let even_radius = DensitySettings::even_radius(chosen.nearest(), chosen.photons(), scene.diffuse_area());
+    Some(MapPlan {
+        kind: S::KIND,
+        wanted: u64::from(chosen.photons()),
+        density: DensitySettings {
+            nearest: chosen.nearest() as usize,
+            max_radius: chosen.max_radius().unwrap_or(even_radius),
+            filter: chosen.filter().into(),
+            shrink: 1.0,
+        },
+        // How many follows from a first batch.
+        batches_per_pass: chosen.progressive().then_some(1),
+    })
+}
+
+fn refuse_too_many(maps: &[MapPlan], settings: &RenderSettings, composed: &Scene, findings: &mut Findings) {
+    let photons: u64 = maps.iter().map(|map| map.wanted).sum();
+    let bytes = photons * PEAK_BYTES_PER_PHOTON;
+    if bytes <= MOST_BYTES {
+        return;
+    }
+    let message = format!(
+        "{photons} photons take about {} GiB of memory; at most {} GiB are used",
+        bytes >> 30,
+        MOST_BYTES >> 30
+    );
+    let finding = Diagnostic::error("too-many-photons", message).note(format!(
+        "at most {} photons, in all maps together",
+        MOST_BYTES / PEAK_BYTES_PER_PHOTON
+    ));
+    let largest = maps.iter().max_by_key(|map| map.wanted).map(|map| map.kind);
+    let component = match largest {
+        Some(MapKind::Direct) => DirectPhotonMap::NAME,
+        Some(MapKind::Indirect) => IndirectPhotonMap::NAME,
+        _ => CausticPhotonMap::NAME,
+    };
+    findings.push_at(
+        field_place(composed, settings.render_prim, component, &["photons"]),
+        finding,
+    );
+}
+
+/// Groups the maps by what their photons are aimed at, and sizes the passes of progressive ones.
+fn plan(maps: Vec<MapPlan>, settings: &RenderSettings, scene: &transport::Scene, camera: &CameraFrame) -> PhotonPlan {
+    let (caustic, global): (Vec<_>, Vec<_>) = maps.into_iter().partition(|map| map.kind == MapKind::Caustic);
+    let mut plan = PhotonPlan {
+        emissions: Vec::new(),
+        seed: settings.seed,
+        // The eye has an event of its own where the photon is read.
+        max_depth: settings.methods.max_depth.saturating_sub(1),
+    };
+    if !caustic.is_empty() {
+        let aim = Aim {
+            stage: PHOTON_STAGE,
+            targets: scene.specular_targets().to_vec(),
+            uniform_share: UNIFORM_SHARE_CAUSTIC,
+        };
+        plan.emissions.push(EmissionPlan { aim, maps: caustic });
+    }
+    if !global.is_empty() {
+        let aim = aim_at_visible(settings, scene, camera);
+        plan.emissions.push(EmissionPlan { aim, maps: global });
+    }
+    let sizes: Vec<Vec<u32>> = plan
+        .emissions
+        .iter()
+        .map(|e| batches_per_pass(e, &plan, scene))
+        .collect();
+    for (emission, sizes) in plan.emissions.iter_mut().zip(sizes) {
+        for (map, size) in emission.maps.iter_mut().zip(sizes) {
+            map.batches_per_pass = map.batches_per_pass.map(|_| size);
+        }
+    }
+    plan
+}
+
+/// Aims photons at what the camera sees, unless most of them land there anyway.
+fn aim_at_visible(settings: &RenderSettings, scene: &transport::Scene, camera: &CameraFrame) -> Aim {
+    let (low, high) = (settings.crop_min.as_vec2(), settings.crop_max.as_vec2());
+    let sight = |i: u32| {
+        let cell = Vec2::new((i % SIGHT_RAYS) as f32 + 0.5, (i / SIGHT_RAYS) as f32 + 0.5);
+        let ray: Ray = camera.0.ray(low + (high - low) * cell / SIGHT_RAYS as f32, 0.5);
+        ray
+    };
+    let targets = visible_targets(scene, settings.seed, (0..SIGHT_RAYS * SIGHT_RAYS).map(sight));
+    let is_needed = landing_share(scene, settings.seed, &targets) < LANDS_BY_ITSELF;
+    Aim {
+        stage: StageKey::new("photon_map/global"),
+        targets: if is_needed { targets } else { Vec::new() },
+        uniform_share: UNIFORM_SHARE_VISIBLE,
+    }
+}
+
+/// Batches that a pass of each map of an emission takes, by a batch that is traced for it. The same for every pass.
+fn batches_per_pass(emission: &EmissionPlan, plan: &PhotonPlan, scene: &transport::Scene) -> Vec<u32> {
+    let progressive = emission.maps.iter().filter(|map| map.batches_per_pass.is_some());
+    let kinds = progressive.fold(MapKinds::default(), |kinds, map| kinds.with(map.kind));
+    let landed = if kinds.is_empty() {
+        Vec::new()
+    } else {
+        let batch = emission.aim.emit_batch(&scene.lights, plan.seed, 0, 0);
+        emission.aim.trace_batch(scene, &batch, kinds, plan, 0, 0)
+    };
+    let count = |map: &MapPlan| landed.iter().filter(|(kind, _)| *kind == map.kind).count();
+    emission.maps.iter().map(|map| map.batches_for(count(map))).collect()
 }

@@ -1,12 +1,12 @@
-use super::PhotonRun;
+use super::run::PhotonRun;
 use bevy_ecs::prelude::*;
 use pipeline_core::{Counter, Counters, record_items};
-use pipeline_data::{CausticPhoton, Photon};
+use pipeline_data::{Photon, PhotonMarker};
 
 /// The query that [`store_in_pool`] overwrites.
-pub type PhotonPool<'w, 's> = Query<'w, 's, &'static mut Photon, With<CausticPhoton>>;
+pub type PhotonPool<'w, 's, M> = Query<'w, 's, &'static mut Photon, With<M>>;
 
-/// The counter of this system, asked for once.
+/// The counter of these systems, asked for once.
 pub(super) struct StoredCounter(Counter);
 
 impl FromWorld for StoredCounter {
@@ -15,16 +15,19 @@ impl FromWorld for StoredCounter {
     }
 }
 
-/// Makes the photons that landed entities, their flux divided by the number emitted.
-pub(super) fn store_photons(
+/// Makes the photons that landed for one map entities, their flux divided by the number emitted.
+pub(super) fn store_photons<M: PhotonMarker>(
     mut commands: Commands,
     mut run: ResMut<PhotonRun>,
-    mut pool: PhotonPool<'_, '_>,
-    entities: Query<Entity, (With<Photon>, With<CausticPhoton>)>,
+    mut pool: PhotonPool<'_, '_, M>,
+    entities: Query<Entity, (With<Photon>, With<M>)>,
     stored: Local<StoredCounter>,
 ) {
-    let mut photons = std::mem::take(&mut run.landed);
-    let scale = 1.0 / run.emitted as f32;
+    let Some(map) = run.landed.iter_mut().find(|map| map.plan.kind == M::KIND) else {
+        return;
+    };
+    let mut photons = std::mem::take(&mut map.photons);
+    let scale = 1.0 / map.emitted.unwrap_or(1).max(1) as f32;
     for photon in &mut photons {
         photon.flux *= scale;
     }
@@ -34,7 +37,7 @@ pub(super) fn store_photons(
     if overwritten < photons.len() {
         let new: Vec<_> = photons[overwritten..]
             .iter()
-            .map(|photon| (*photon, CausticPhoton))
+            .map(|photon| (*photon, M::default()))
             .collect();
         commands.spawn_batch(new);
     }
@@ -47,7 +50,7 @@ pub(super) fn store_photons(
 }
 
 /// Overwrites the photon entities that there are, column by column; returns how many photons found a place.
-pub fn store_in_pool(photons: &[Photon], pool: &mut PhotonPool<'_, '_>) -> usize {
+pub fn store_in_pool<M: PhotonMarker>(photons: &[Photon], pool: &mut PhotonPool<'_, '_, M>) -> usize {
     let mut done = 0;
     if let Ok(columns) = pool.contiguous_iter_mut() {
         for mut column in columns {

@@ -1,11 +1,11 @@
-use super::PhotonRun;
+use super::run::{MapPlan, MapRun, PhotonRun};
 use super::store::store_photons;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::RunSystemOnce;
 use pipeline_core::Counters;
 use pipeline_data::{CausticPhoton, Photon};
 use radiometry::Rgb;
-use transport::{DensityFilter, DensitySettings};
+use transport::{DensityFilter, DensitySettings, MapKind};
 
 fn photon(path: u32) -> Photon {
     Photon {
@@ -24,12 +24,23 @@ fn store(world: &mut World, count: u32) {
         nearest: 50,
         max_radius: 1.0,
         filter: DensityFilter::Cone,
+        shrink: 1.0,
     };
-    let mut run = PhotonRun::new(u64::from(count), density);
-    run.emitted = 16;
-    run.landed = (0..count).map(photon).collect();
+    let mut map = MapRun::new(MapPlan {
+        kind: MapKind::Caustic,
+        wanted: u64::from(count),
+        density,
+        batches_per_pass: None,
+    });
+    map.emitted = Some(16);
+    map.photons = (0..count).map(photon).collect();
+    let run = PhotonRun {
+        pass: 0,
+        emissions: Default::default(),
+        landed: vec![map],
+    };
     world.insert_resource(run);
-    world.run_system_once(store_photons).unwrap();
+    world.run_system_once(store_photons::<CausticPhoton>).unwrap();
 }
 
 /// The stored photons: entity, path and flux.

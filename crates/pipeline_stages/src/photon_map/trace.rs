@@ -1,13 +1,7 @@
-use super::PhotonRun;
+use super::run::{EmissionRun, PhotonPlan, PhotonRun};
 use bevy_ecs::prelude::*;
-use pipeline_core::{Counter, Counters, Progress, RenderClock, Report, record_items};
-use pipeline_data::{Photon, RenderSettings, TransportScene};
-use radiometry::SampleStream;
-use rayon::prelude::*;
-use transport::{MapKinds, PHOTON_STAGE, trace_photon};
-
-/// Photon paths that one task follows.
-const TASK_PATHS: usize = 512;
+use pipeline_core::{Counter, Counters, Progress, Report, record_items};
+use pipeline_data::{BuiltPhotonMaps, TransportScene};
 
 /// The counter of this system, asked for once.
 pub(super) struct EmittedCounter(Counter);
@@ -21,53 +15,48 @@ impl FromWorld for EmittedCounter {
 /// Follows the photons of the batch to where they land.
 pub(super) fn trace_photons(
     mut run: ResMut<PhotonRun>,
+    plan: Res<PhotonPlan>,
     scene: Res<TransportScene>,
-    settings: Res<RenderSettings>,
+    built: Option<Res<BuiltPhotonMaps>>,
     emitted: Local<EmittedCounter>,
     progress: Res<Progress>,
-    mut clock: ResMut<RenderClock>,
     mut report: ResMut<Report>,
 ) {
-    let first = run.emitted;
-    // The eye has an event of its own where the photon is read.
-    let max_depth = settings.methods.max_depth.saturating_sub(1);
-    let follow = |(task, photons): (usize, &[_])| {
-        let mut landed = Vec::new();
-        for (i, photon) in photons.iter().enumerate() {
-            let Some(photon) = photon else { continue };
-            let path = first + (task * TASK_PATHS + i) as u32;
-            let stream = SampleStream::new(settings.seed, PHOTON_STAGE, 0, path);
-            trace_photon(
-                &scene.0,
-                photon,
-                MapKinds::CAUSTIC,
-                max_depth,
-                path,
-                &stream,
-                |deposit| {
-                    landed.push(Photon::from(deposit));
-                },
-            );
-        }
-        landed
+    let pass = run.pass;
+    let Some(emission) = run.emissions.front_mut() else {
+        return;
     };
-    let landed: Vec<Vec<Photon>> = run.batch.par_chunks(TASK_PATHS).enumerate().map(follow).collect();
-    run.landed.extend(landed.into_iter().flatten());
-    run.emitted += run.batch.len() as u32;
-    emitted.0.add(run.batch.len() as u64);
-    record_items(run.batch.len());
-    progress.set_done((run.landed.len() as u64).min(run.wanted));
-    if run.has_enough() {
-        run.is_over = true;
-        clock.photons_pending -= 1;
-        if (run.landed.len() as u64) < run.wanted {
-            report.warn(format!(
-                "warning[few-photons]: {} of {} caustic photons are stored after {} were emitted; the caustic is coarser than asked for\n  \
-                 = little light reaches specular surfaces; ask for fewer photons, or set `LightTransport.caustic` to `Trace` or `Off`",
-                run.landed.len(),
-                run.wanted,
-                run.emitted
-            ));
+    let batch = std::mem::take(&mut emission.batch);
+    let landed = emission
+        .aim
+        .trace_batch(&scene.0, &batch, emission.wanted(), &plan, pass, emission.emitted);
+    emission.take_in(landed);
+    emitted.0.add(batch.len() as u64);
+    record_items(batch.len());
+    if emission.wanted().is_empty()
+        && let Some(over) = run.emissions.pop_front()
+    {
+        if built.is_none() {
+            warn_of_few_photons(&over, &mut report);
         }
+        run.landed.extend(over.maps);
+    }
+    // Later passes belong to the progress of rendering.
+    if built.is_none() {
+        progress.set_done(run.landed_count());
+    }
+}
+
+fn warn_of_few_photons(emission: &EmissionRun, report: &mut Report) {
+    for map in &emission.maps {
+        let (kind, landed, wanted) = (map.plan.kind.name(), map.photons.len(), map.plan.wanted);
+        if map.plan.batches_per_pass.is_some() || landed as u64 >= wanted {
+            continue;
+        }
+        let emitted = map.emitted.unwrap_or_default();
+        report.warn(format!(
+            "warning[few-photons]: {landed} of {wanted} {kind} photons are stored after {emitted} were emitted; their light is coarser than \
+             asked for\n  = little light takes such ways here; ask for fewer photons, or choose another method in `LightTransport`"
+        ));
     }
 }

@@ -3,8 +3,7 @@ use bevy_ecs::prelude::*;
 use film::FilmWindow;
 use glam::UVec2;
 use pipeline_data::vocabulary::{
-    Camera, Film, Findings, IndirectMethod, LightTransport, Render, SceneReport, SpecularMethod, component_place,
-    field_place,
+    Camera, Film, Findings, LightTransport, Render, SceneReport, SpecularMethod, component_place, field_place,
 };
 use pipeline_data::{
     CameraFrame, FilmSums, PrimIndex, RenderRequest, RenderSettings, SceneOrigin, WorldMotion, WorldTransform,
@@ -47,11 +46,6 @@ pub(super) fn resolve_settings(
         let default = Film::default();
         let mut settings = settings(*index, render, film.unwrap_or(&default), methods, request);
         check_film(scene, &settings, request, &mut findings);
-        if render.passes.is_some() {
-            let finding = Diagnostic::error("not-supported-yet", "`Render.passes` is not supported yet")
-                .note("leave it out: no method of this version is progressive");
-            findings.push_at(field_place(scene, index.0, "Render", &["passes"]), finding);
-        }
         let frame = find_camera(scene, &settings, render, &cameras, &origin, &mut findings);
         if let (Some((camera_prim, frame)), false) = (frame, findings.has_error()) {
             settings.camera_prim = camera_prim;
@@ -122,7 +116,7 @@ fn settings(
             direct: methods.direct.into(),
             specular: methods.specular == SpecularMethod::Trace,
             caustic: methods.caustic.into(),
-            indirect: methods.indirect == IndirectMethod::PathTrace,
+            indirect: methods.indirect.into(),
             specular_alpha: methods.specular_alpha,
             max_depth: render.max_depth.unwrap_or(u32::MAX),
         },
@@ -131,6 +125,7 @@ fn settings(
             (None, Some(_)) => MOST_SAMPLES,
             (None, None) => render.samples,
         },
+        passes: render.passes,
         seed: request.seed.unwrap_or(render.seed),
         resolution,
         crop_min: UVec2::new(x0, y0),

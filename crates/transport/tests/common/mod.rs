@@ -8,7 +8,7 @@ use radiometry::{Rgb, SampleStream, StageKey};
 use scattering::{Bsdf, DielectricBsdf, DiffuseBsdf, Microsurface};
 use spatial::{Geometry, Instance, Ray, RayScene, Shape};
 use transport::{
-    DensityScratch, DensitySettings, Layer, LightSource, Material, Methods, MovingFrame, Path, PathMedium, PhotonMap,
+    Layer, LightSource, MapKind, Material, Methods, MovingFrame, Path, PathMedium, PhotonMaps, PhotonMapsScratch,
     Scene, Vertex, arrive, emitted_light, sample_direct_light, scatter,
 };
 
@@ -70,35 +70,29 @@ pub(crate) fn floor() -> DAffine3 {
 
 /// Radiance along a ray, all terms, averaged over `samples`; by layer.
 pub(crate) fn radiance(scene: &Scene, methods: &Methods, ray: Ray, samples: u32) -> [f64; Layer::COUNT] {
-    radiance_with(scene, methods, None, ray, samples)
+    radiance_with(scene, methods, &PhotonMaps::default(), ray, samples)
 }
 
-/// The same, with a caustic photon map that is read as `methods` say.
+/// The same, with photon maps that are read as `methods` say.
 pub(crate) fn radiance_with(
     scene: &Scene,
     methods: &Methods,
-    caustics: Option<(&PhotonMap, DensitySettings)>,
+    maps: &PhotonMaps,
     ray: Ray,
     samples: u32,
 ) -> [f64; Layer::COUNT] {
-    trace(scene, methods, caustics, ray, samples).map(|sum| sum[1])
+    trace(scene, methods, maps, ray, samples).map(|sum| sum[1])
 }
 
 /// Radiance along a ray, all terms and layers together, by channel.
 pub(crate) fn colour(scene: &Scene, ray: Ray, samples: u32) -> [f64; 3] {
-    let layers = trace(scene, &Methods::TRACED, None, ray, samples);
+    let layers = trace(scene, &Methods::TRACED, &PhotonMaps::default(), ray, samples);
     [0, 1, 2].map(|channel| layers.iter().map(|layer| layer[channel]).sum())
 }
 
-fn trace(
-    scene: &Scene,
-    methods: &Methods,
-    caustics: Option<(&PhotonMap, DensitySettings)>,
-    ray: Ray,
-    samples: u32,
-) -> [[f64; 3]; Layer::COUNT] {
+fn trace(scene: &Scene, methods: &Methods, maps: &PhotonMaps, ray: Ray, samples: u32) -> [[f64; 3]; Layer::COUNT] {
     let mut sums = [[0.0; 3]; Layer::COUNT];
-    let mut scratch = DensityScratch::default();
+    let mut scratch = PhotonMapsScratch::default();
     for sample in 0..samples {
         let mut path = Path::from_eye(0, SampleStream::new(7, StageKey::new("closed forms"), 0, sample));
         let mut ray = ray;
@@ -113,13 +107,11 @@ fn trace(
                 add(layer, light);
             }
             let Some(hit) = hit else { break };
-            if let (Some((map, density)), Some(layer)) = (&caustics, methods.caustic_map_layer(path.class)) {
-                let vertex = Vertex::new(scene, &hit, -ray.direction, &PathMedium::VACUUM);
-                if vertex.bsdf.has_diffuse() {
-                    add(
-                        layer,
-                        path.throughput * map.estimate_radiance(&vertex, density, &mut scratch),
-                    );
+            let vertex = Vertex::new(scene, &hit, -ray.direction, &PathMedium::VACUUM);
+            for kind in MapKind::ALL.into_iter().filter(|_| vertex.bsdf.has_diffuse()) {
+                if let Some(layer) = methods.map_layer(kind, path.class) {
+                    let estimate = maps.estimate_radiance(kind, &vertex, &mut scratch);
+                    add(layer, path.throughput * estimate.value);
                 }
             }
             sample_direct_light(scene, methods, &path, &ray, &hit, &mut add);

@@ -1,0 +1,74 @@
+use super::{FinalGather, GatherSource};
+use bevy_ecs::prelude::*;
+use pipeline_core::RenderClock;
+use pipeline_data::vocabulary::{Findings, SceneReport, component_place};
+use pipeline_data::{BuiltPhotonMaps, PhotonDemand, PrimIndex, ProgressivePasses, RenderSettings};
+use scene_format::Diagnostic;
+use transport::{GatherMethods, IndirectMethod, MapKind, MapKinds};
+
+/// How the render gathers. Written by `plan_gathering`; present where it does.
+#[derive(Resource, Clone, Copy, Debug)]
+pub(super) struct GatherPlan {
+    pub(super) rays: u32,
+    pub(super) methods: GatherMethods,
+    pub(super) reads_photons: bool,
+    pub(super) precomputed: bool,
+}
+
+/// Takes up the settings, and asks for the photon maps.
+pub(super) fn plan_gathering(
+    mut commands: Commands,
+    settings: Option<Res<RenderSettings>>,
+    prims: Query<(&PrimIndex, &FinalGather)>,
+    mut demand: ResMut<PhotonDemand>,
+    report: Option<SceneReport<'_>>,
+) {
+    commands.remove_resource::<GatherPlan>();
+    let (Some(settings), Some(mut report)) = (settings, report) else {
+        return;
+    };
+    let is_chosen = settings.methods.indirect == IndirectMethod::FinalGather;
+    let mut findings = Findings::default();
+    let mut chosen = FinalGather::default();
+    for (prim, written) in &prims {
+        let unused = if prim.0 != settings.render_prim {
+            "`FinalGather` stands on a prim that carries no `Render`; it has no effect there"
+        } else if !is_chosen {
+            "`FinalGather` has no effect: `LightTransport.indirect` is not `FinalGather`"
+        } else {
+            chosen = written.clone();
+            continue;
+        };
+        let place = component_place(report.scene(), prim.0, "FinalGather");
+        findings.push_at(place, Diagnostic::warning("unused-settings", unused));
+    }
+    report.file(findings);
+    if !is_chosen {
+        return;
+    }
+    let reads_photons = chosen.incoming == GatherSource::Photons;
+    if reads_photons {
+        demand.0 = MapKind::ALL.into_iter().fold(demand.0, MapKinds::with);
+    }
+    commands.insert_resource(GatherPlan {
+        rays: chosen.rays,
+        methods: GatherMethods::new(&settings.methods, reads_photons),
+        reads_photons,
+        precomputed: chosen.precomputed,
+    });
+}
+
+/// True when photon maps have just been built whose irradiance is to be computed beforehand.
+///
+/// Not of progressive ones: the distance between records would not shrink with the radius, and its blur would stay.
+pub(super) fn precomputes(
+    plan: Option<Res<GatherPlan>>,
+    maps: Option<Res<BuiltPhotonMaps>>,
+    clock: Res<RenderClock>,
+    progressive: Option<Res<ProgressivePasses>>,
+) -> bool {
+    plan.is_some_and(|plan| plan.precomputed && plan.reads_photons)
+        && maps.is_some_and(|maps| maps.0.irradiance.is_none())
+        && clock.photons_pending == 0
+        && progressive.is_none()
+}
