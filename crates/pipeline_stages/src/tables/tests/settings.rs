@@ -3,7 +3,7 @@ use bevy_app::App;
 use film::{FilterKind, ToneMap};
 use glam::{UVec2, Vec2, Vec3};
 use pipeline_data::{CameraFrame, RenderRequest, RenderSettings};
-use transport::{CausticMethod, DirectMethod};
+use transport::{CausticMethod, DirectMethod, IndirectMethod};
 
 fn settings(app: &App) -> &RenderSettings {
     assert_eq!(errors(app), "");
@@ -29,7 +29,7 @@ fn settings_come_from_the_render_prim() {
         (methods.direct, methods.caustic),
         (DirectMethod::Off, CausticMethod::Trace)
     );
-    assert_eq!((methods.specular, methods.indirect), (false, false));
+    assert_eq!((methods.specular, methods.indirect), (false, IndirectMethod::Off));
     assert_eq!((methods.specular_alpha, methods.max_depth), (0.1, 9));
     let plain = prepare(&[BALL, SKY, CAMERA, "\"/R\": Def(Render: (camera: \"/Camera\")),\n"]);
     let plain = self::settings(&plain);
@@ -39,7 +39,7 @@ fn settings_come_from_the_render_prim() {
     );
     assert_eq!(
         (plain.methods.caustic, plain.methods.indirect),
-        (CausticMethod::PhotonMap, true)
+        (CausticMethod::PhotonMap, IndirectMethod::PathTrace)
     );
 }
 
