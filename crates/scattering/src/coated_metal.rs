@@ -21,7 +21,7 @@ const COAT_STEPS: usize = 8;
 /// - `alpha`: not smooth; a mirror misses nothing.
 /// - `coat_alpha`: 0 for a smooth coat.
 #[inline]
-pub(crate) fn coated_loss(alpha: f32, coat_alpha: f32) -> SideLoss<4> {
+pub(crate) fn coated_loss(alpha: f32, coat_alpha: f32) -> SideLoss<2> {
     let slab = if coat_alpha > 0.0 {
         let low = eighth_root(SMOOTH_ALPHA);
         let (i, f) = cell((eighth_root(coat_alpha) - low) / (1.0 - low), COAT_STEPS);
@@ -35,8 +35,8 @@ pub(crate) fn coated_loss(alpha: f32, coat_alpha: f32) -> SideLoss<4> {
 static COATED: LazyLock<LossTable> = LazyLock::new(build);
 
 fn build() -> LossTable {
-    let quadrature = Quadrature::graded(12, 24);
-    LossTable::build(COAT_STEPS + 2, 32, 26, |slab, alpha, mu| {
+    let quadrature = Quadrature::new((610, 377));
+    LossTable::new(COAT_STEPS + 2, 64, 48, move |slab, alpha, mu| {
         let coat_alpha = match slab {
             0 => 0.0,
             _ => alpha_of_row((slab - 1) as f32 / COAT_STEPS as f32),

@@ -164,9 +164,10 @@ impl ConductorBsdf {
         }
         let loss = reflection_loss(self.surface.alpha());
         let loss_o = loss.at(cos_o);
+        let (loss_i, pdf_i) = loss.at_and_pdf(cos_i);
         (
-            value + self.multiple * (loss_o * loss.at(cos_i) * cos_i),
-            pdf * (1.0 - loss_o) + loss_o * loss.pdf(cos_i),
+            value + self.multiple * (loss_o * loss_i * cos_i),
+            pdf * (1.0 - loss_o) + loss_o * pdf_i,
         )
     }
 

@@ -72,11 +72,11 @@ impl DielectricBsdf {
             let from = usize::from(wo.z < 0.0);
             let to = usize::from(wi.z < 0.0);
             let loss_o = refraction_loss(alpha, eta).at(cos_o);
-            let loss = refraction_loss(alpha, self.eta_from(wi));
+            let (loss_i, pdf_i) = refraction_loss(alpha, self.eta_from(wi)).at_and_pdf(cos_i);
             let crossing = self.interface.crossing[from];
             let share = loss_o * if reflected { 1.0 - crossing } else { crossing };
-            value += share * loss.at(cos_i) * self.interface.inverse_loss[to] * cos_i * FRAC_1_PI;
-            pdf = pdf * (1.0 - loss_o) + share * loss.pdf(cos_i);
+            value += share * loss_i * self.interface.inverse_loss[to] * cos_i * FRAC_1_PI;
+            pdf = pdf * (1.0 - loss_o) + share * pdf_i;
         }
         if reflected {
             (Rgb::splat(value), pdf)

@@ -63,7 +63,7 @@ pub(super) struct Mixture<'a> {
     shares_o: [SchlickShares; 2],
     pub(super) solids: [Option<DielectricBsdf>; 2],
     /// The loss under the coat, the share of it that is kept, and 1 − R of the coat from `wo`.
-    pub(super) coated: Option<(SideLoss<4>, Rgb, f32)>,
+    pub(super) coated: Option<(SideLoss<2>, Rgb, f32)>,
     sheen: Option<Sheen>,
     /// What the sheen lets through, from `wo`.
     below_sheen_o: f32,
@@ -260,9 +260,10 @@ impl<'a> Mixture<'a> {
             return;
         };
         let (cos_o, cos_i) = (wo.z.abs(), wi.z.abs());
-        let shape = loss.at(cos_o) * loss.at(cos_i) * cos_i * FRAC_1_PI / loss.average().max(f32::MIN_POSITIVE);
+        let (loss_i, pdf_i) = loss.at_and_pdf(cos_i);
+        let shape = loss.at(cos_o) * loss_i * cos_i * FRAC_1_PI / loss.average().max(f32::MIN_POSITIVE);
         *values = *values + LobeValues::of_class(surface.class(), *kept * shape);
-        *pdf += self.probability(Lobe::Between) * loss.pdf(cos_i);
+        *pdf += self.probability(Lobe::Between) * pdf_i;
     }
 }
 

@@ -91,6 +91,90 @@ fn assert_sampled_as_promised(name: &str, bsdf: &Bsdf, cosines: &[f32]) {
 }
 
 #[test]
+fn a_slightly_wrong_density_is_noticed() {
+    let wo = direction(0.6);
+    let shares = expected(&metal(1.0, 0.21, true), wo);
+    let z = deviate(&shares, &observed(&metal(1.0, 0.2, true), wo, 1));
+    assert!(z > 2.0 * LARGEST_DEVIATE, "deviate {z}");
+}
+
+/// How often a surface of delta lobes reflects and transmits, against its shares of flux.
+#[test]
+fn delta_lobes_are_drawn_by_what_they_carry() {
+    let gold = Metal::from_name("gold").expect("a listed metal");
+    let mirror = Bsdf::Conductor(ConductorBsdf::new(gold.into(), surface(0.0, true)));
+    let pane = Bsdf::Dielectric(DielectricBsdf::thin(1.5, Rgb::WHITE));
+    for (name, bsdf) in [("mirror", mirror), ("glass", glass(1.5, 0.0, true)), ("pane", pane)] {
+        for cos_o in [1.0, 0.8, 0.2, -0.9, -0.3] {
+            let wo = direction(cos_o);
+            let (once, _) = crate::fresnel_dielectric(cos_o, if cos_o > 0.0 { 1.5 } else { 1.0 / 1.5 });
+            let (of_pane, _) = crate::fresnel_dielectric(cos_o, 1.5);
+            let reflected = match name {
+                "mirror" => 1.0,
+                "glass" => once,
+                _ => 2.0 * of_pane / (1.0 + of_pane),
+            };
+            let mut numbers = Numbers(4 << 40);
+            let n = 20_000;
+            let mut transmitted = 0;
+            for _ in 0..n {
+                let sample = bsdf.sample(wo, numbers.next(), numbers.next_2d(), Transport::Flux);
+                let s = sample.expect("a delta lobe always answers");
+                assert!(
+                    s.is_delta() && bsdf.pdf(wo, s.wi, Transport::Flux) == 0.0,
+                    "{name}: {s:?}"
+                );
+                transmitted += u32::from(s.transmitted);
+            }
+            let share = 1.0 - f64::from(reflected);
+            let spread = (f64::from(n) * share * (1.0 - share)).sqrt();
+            let off = (f64::from(transmitted) - f64::from(n) * share).abs();
+            assert!(
+                off <= LARGEST_DEVIATE * spread + 0.5,
+                "{name} at {cos_o}: {transmitted} of {n}"
+            );
+        }
+    }
+}
+
+/// ∫pdf is the share of draws that find a direction: all of them where no microfacet can send one below the horizon, and
+/// all but what single scattering sends there elsewhere.
+#[test]
+fn densities_integrate_to_the_share_of_draws_that_succeed() {
+    /// Of draws: what the lattice of the integral and 200,000 draws are off by.
+    const TOLERANCE: f64 = 3e-3;
+    let diffuse = Bsdf::Diffuse(DiffuseBsdf::new(Rgb::splat(0.5)));
+    let sheen = principled(PrincipledParameters {
+        sheen: Rgb::WHITE,
+        sheen_roughness: 0.5,
+        base_color: Rgb::BLACK,
+        specular: 0.0,
+        ..PrincipledParameters::default()
+    });
+    let complete = [("diffuse", diffuse), ("sheen", sheen)];
+    let partial = [
+        ("metal", metal(1.0, 0.5, true)),
+        ("Beckmann", beckmann(0.5)),
+        ("glass", glass(1.5, 0.5, true)),
+        ("plastic", plastic(Rgb::WHITE, 1.5, 0.5)),
+    ];
+    for (name, bsdf) in complete.into_iter().chain(partial) {
+        for cos_o in [0.9, 0.3] {
+            let failed = expected(&bsdf, direction(cos_o))[THETA_BINS * PHI_BINS];
+            let drawn = observed(&bsdf, direction(cos_o), 9)[THETA_BINS * PHI_BINS] / SAMPLES as f64;
+            assert!(
+                (failed - drawn).abs() < TOLERANCE,
+                "{name} at {cos_o}: {failed} {drawn}"
+            );
+            assert!(
+                drawn == 0.0 || complete.iter().all(|(all, _)| *all != name),
+                "{name}: {drawn}"
+            );
+        }
+    }
+}
+
+#[test]
 fn diffuse() {
     let bsdf = Bsdf::Diffuse(DiffuseBsdf::new(Rgb::splat(0.5)));
     assert_sampled_as_promised("diffuse", &bsdf, &[1.0, 0.3, -0.6]);

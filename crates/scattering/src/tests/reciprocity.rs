@@ -1,5 +1,5 @@
 use super::*;
-use crate::Transport;
+use crate::{DiffuseBsdf, Transport};
 use radiometry::warp;
 
 /// Pairs of directions away from the horizon, where the ratio of two small numbers would be compared.
@@ -19,24 +19,70 @@ fn both_ways(bsdf: &Bsdf, wo: Vec3, wi: Vec3) -> (Rgb, Rgb) {
     )
 }
 
-fn assert_reciprocal(name: &str, bsdf: &Bsdf) {
+fn is_same(a: f32, b: f32) -> bool {
     /// Relative; the half-vector of refraction cancels when the indices are close.
     const TOLERANCE: f32 = 2e-3;
     /// Absolute; what rounding makes of a transmittance that vanishes at the critical angle.
     const TINY: f32 = 1e-5;
+    (a - b).abs() <= TOLERANCE * a.max(b) + TINY
+}
+
+fn assert_reciprocal(name: &str, bsdf: &Bsdf) {
     let mut positive = 0;
     for (wo, wi) in pairs(4000) {
         let (flux, radiance) = both_ways(bsdf, wo, wi);
         positive += usize::from(flux.r > 0.0);
         for channel in 0..3 {
             let (a, b) = (flux[channel], radiance[channel]);
-            assert!(
-                (a - b).abs() <= TOLERANCE * a.max(b) + TINY,
-                "{name}: {wo} {wi}: {a} {b}"
-            );
+            assert!(is_same(a, b), "{name}: {wo} {wi}: {a} {b}");
         }
     }
     assert!(positive > 1000, "{name}: only {positive} pairs scatter");
+}
+
+#[test]
+fn matt_surfaces_and_sheen_are_reciprocal() {
+    assert_reciprocal("diffuse", &Bsdf::Diffuse(DiffuseBsdf::new(Rgb::new(0.9, 0.5, 0.1))));
+    for sheen_roughness in [0.2, 0.6, 1.0] {
+        let cloth = PrincipledParameters {
+            base_color: Rgb::new(0.5, 0.9, 0.1),
+            sheen: Rgb::new(0.9, 0.4, 1.0),
+            sheen_roughness,
+            ..PrincipledParameters::default()
+        };
+        assert_reciprocal("cloth", &principled(cloth));
+    }
+}
+
+/// The comparison finds what is not reciprocal: glass without the η² of radiance.
+#[test]
+#[should_panic(expected = "forgetful")]
+fn a_missing_square_of_eta_is_noticed() {
+    let bsdf = glass(1.2, 0.4, true);
+    for (wo, wi) in pairs(4000).filter(|(a, b)| a.z * b.z < 0.0) {
+        let f = |a: Vec3, b: Vec3| bsdf.eval(a, b, Transport::Flux).total().r / b.z.abs();
+        assert!(is_same(f(wo, wi), f(wi, wo)), "forgetful glass");
+    }
+}
+
+#[test]
+fn delta_lobes_send_light_back_where_it_came_from() {
+    let gold = Metal::from_name("gold").expect("a listed metal");
+    let mirror = Bsdf::Conductor(ConductorBsdf::new(gold.into(), surface(0.0, true)));
+    let pane = Bsdf::Dielectric(DielectricBsdf::thin(1.5, Rgb::splat(0.8)));
+    for (bsdf, u_lobe) in [(mirror, 0.5), (pane, 0.0), (pane, 0.999)] {
+        for cos_o in [0.9, 0.3, -0.6] {
+            let wo = direction(cos_o);
+            let draw = |wo| {
+                bsdf.sample(wo, u_lobe, Vec2::ZERO, Transport::Radiance)
+                    .expect("a delta lobe")
+            };
+            let there = draw(wo);
+            let back = draw(there.wi);
+            assert!((back.wi - wo).length() < 1e-6 && back.transmitted == there.transmitted);
+            assert!((back.weight - there.weight).map(f32::abs).max_element() < 1e-6);
+        }
+    }
 }
 
 #[test]
