@@ -58,6 +58,10 @@ impl GatherMethods {
 /// - `rays`: N, at least 1.
 /// - returns radiance in W·m⁻²·sr⁻¹, weighted with what the path carries.
 #[must_use]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the scene, the path where it stands, and how to gather"
+)]
 pub fn gather_indirect(
     scene: &Scene,
     methods: &GatherMethods,

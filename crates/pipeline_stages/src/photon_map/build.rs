@@ -28,7 +28,7 @@ pub(super) fn build_photon_map<M: PhotonMarker>(
         }
     };
     record_items(photons.len());
-    match photon_map(photons, map.density(run.pass)) {
+    match photon_map(photons, map.density()) {
         Ok(map) => built.0.insert(M::KIND, map),
         Err(error) => {
             let kind = M::KIND.name();

@@ -23,12 +23,11 @@ pub(super) fn begin_photons(
 
 /// Emits the next batch of photons.
 pub(super) fn emit_photons(mut run: ResMut<PhotonRun>, plan: Res<PhotonPlan>, scene: Res<TransportScene>) {
-    let pass = run.pass;
     let Some(emission) = run.emissions.front_mut() else {
         return;
     };
     emission.batch = emission
         .aim
-        .emit_batch(&scene.0.lights, plan.seed, pass, emission.emitted);
+        .emit_batch(&scene.0.lights, plan.seed, emission.pass, emission.emitted);
     record_items(emission.batch.len());
 }

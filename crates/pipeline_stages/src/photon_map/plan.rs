@@ -65,7 +65,7 @@ pub(super) fn plan_photons(
     let wanted = wanted_maps(&settings, demand);
     let maps = chosen_maps(&prims, wanted, &settings, &scene.0, report.scene(), &mut findings);
     refuse_too_many(&maps, &settings, report.scene(), &mut findings);
-    let is_progressive = maps.iter().any(|map| map.batches_per_pass.is_some());
+    let is_progressive = maps.iter().any(|(_, is_progressive)| *is_progressive);
     if settings.passes.is_some() && !is_progressive {
         let finding = Diagnostic::warning(
             "unused-settings",
@@ -94,7 +94,7 @@ fn wanted_maps(settings: &RenderSettings, demand: MapKinds) -> MapKinds {
     MapKind::ALL.into_iter().filter(read).fold(demand, MapKinds::with)
 }
 
-/// The maps that are wanted and can hold anything, with the settings of the render prim or the defaults. Warns of settings
+/// The maps that are wanted and can hold anything, and whether each is progressive, with the settings of the render prim or the defaults. Warns of settings
 /// without effect.
 fn chosen_maps(
     prims: &MapPrims<'_, '_>,
@@ -103,7 +103,7 @@ fn chosen_maps(
     scene: &transport::Scene,
     composed: &Scene,
     findings: &mut Findings,
-) -> Vec<MapPlan> {
+) -> Vec<(MapPlan, bool)> {
     let kinds = [
         chosen(&prims.direct, wanted, settings, scene, composed, findings),
         chosen(&prims.caustic, wanted, settings, scene, composed, findings),
@@ -119,7 +119,7 @@ fn chosen<S: PhotonMapSettings>(
     scene: &transport::Scene,
     composed: &Scene,
     findings: &mut Findings,
-) -> Option<MapPlan> {
+) -> Option<(MapPlan, bool)> {
     let mut chosen = S::default();
     for (prim, written) in prims {
         let unused = if prim.0 != settings.render_prim {
@@ -144,7 +144,7 @@ fn chosen<S: PhotonMapSettings>(
         return None;
     }
     let even_radius = DensitySettings::even_radius(chosen.nearest(), chosen.photons(), scene.diffuse_area());
-    Some(MapPlan {
+    let plan = MapPlan {
         kind: S::KIND,
         wanted: u64::from(chosen.photons()),
         density: DensitySettings {
@@ -153,13 +153,13 @@ fn chosen<S: PhotonMapSettings>(
             filter: chosen.filter().into(),
             shrink: 1.0,
         },
-        // How many follows from a first batch.
-        batches_per_pass: chosen.progressive().then_some(1),
-    })
+        batches: None,
+    };
+    Some((plan, chosen.progressive()))
 }
 
-fn refuse_too_many(maps: &[MapPlan], settings: &RenderSettings, composed: &Scene, findings: &mut Findings) {
-    let photons: u64 = maps.iter().map(|map| map.wanted).sum();
+fn refuse_too_many(maps: &[(MapPlan, bool)], settings: &RenderSettings, composed: &Scene, findings: &mut Findings) {
+    let photons: u64 = maps.iter().map(|(map, _)| map.wanted).sum();
     let bytes = photons * PEAK_BYTES_PER_PHOTON;
     if bytes <= MOST_BYTES {
         return;
@@ -173,7 +173,7 @@ fn refuse_too_many(maps: &[MapPlan], settings: &RenderSettings, composed: &Scene
         "at most {} photons, in all maps together",
         MOST_BYTES / PEAK_BYTES_PER_PHOTON
     ));
-    let largest = maps.iter().max_by_key(|map| map.wanted).map(|map| map.kind);
+    let largest = maps.iter().max_by_key(|(map, _)| map.wanted).map(|(map, _)| map.kind);
     let component = match largest {
         Some(MapKind::Direct) => DirectPhotonMap::NAME,
         Some(MapKind::Indirect) => IndirectPhotonMap::NAME,
@@ -185,38 +185,57 @@ fn refuse_too_many(maps: &[MapPlan], settings: &RenderSettings, composed: &Scene
     );
 }
 
-/// Groups the maps by what their photons are aimed at, and sizes the passes of progressive ones.
-fn plan(maps: Vec<MapPlan>, settings: &RenderSettings, scene: &transport::Scene, camera: &CameraFrame) -> PhotonPlan {
-    let (caustic, global): (Vec<_>, Vec<_>) = maps.into_iter().partition(|map| map.kind == MapKind::Caustic);
+/// Groups the maps by what their photons are aimed at and for how long they serve, and sizes the passes of progressive ones.
+fn plan(
+    maps: Vec<(MapPlan, bool)>,
+    settings: &RenderSettings,
+    scene: &transport::Scene,
+    camera: &CameraFrame,
+) -> PhotonPlan {
     let mut plan = PhotonPlan {
         emissions: Vec::new(),
         seed: settings.seed,
         // The eye has an event of its own where the photon is read.
         max_depth: settings.methods.max_depth.saturating_sub(1),
     };
-    if !caustic.is_empty() {
-        let aim = Aim {
-            stage: PHOTON_STAGE,
-            targets: scene.specular_targets().to_vec(),
-            uniform_share: UNIFORM_SHARE_CAUSTIC,
-        };
-        plan.emissions.push(EmissionPlan { aim, maps: caustic });
-    }
-    if !global.is_empty() {
-        let aim = aim_at_visible(settings, scene, camera);
-        plan.emissions.push(EmissionPlan { aim, maps: global });
-    }
-    let sizes: Vec<Vec<u32>> = plan
-        .emissions
-        .iter()
-        .map(|e| batches_per_pass(e, &plan, scene))
-        .collect();
-    for (emission, sizes) in plan.emissions.iter_mut().zip(sizes) {
-        for (map, size) in emission.maps.iter_mut().zip(sizes) {
-            map.batches_per_pass = map.batches_per_pass.map(|_| size);
+    for is_caustic in [true, false] {
+        let mut aim = None;
+        for is_progressive in [false, true] {
+            let belongs = |(map, progressive): &&(MapPlan, bool)| {
+                (map.kind == MapKind::Caustic) == is_caustic && *progressive == is_progressive
+            };
+            let maps: Vec<MapPlan> = maps.iter().filter(belongs).map(|(map, _)| *map).collect();
+            if maps.is_empty() {
+                continue;
+            }
+            let aim = aim.get_or_insert_with(|| {
+                if is_caustic {
+                    aim_at_specular(scene)
+                } else {
+                    aim_at_visible(settings, scene, camera)
+                }
+            });
+            let mut emission = EmissionPlan {
+                aim: aim.clone(),
+                is_progressive,
+                maps,
+            };
+            if is_progressive {
+                size_passes(&mut emission, &plan, scene);
+            }
+            plan.emissions.push(emission);
         }
     }
     plan
+}
+
+/// Aims photons at what makes caustics.
+fn aim_at_specular(scene: &transport::Scene) -> Aim {
+    Aim {
+        stage: PHOTON_STAGE,
+        targets: scene.specular_targets().to_vec(),
+        uniform_share: UNIFORM_SHARE_CAUSTIC,
+    }
 }
 
 /// Aims photons at what the camera sees, unless most of them land there anyway.
@@ -236,16 +255,14 @@ fn aim_at_visible(settings: &RenderSettings, scene: &transport::Scene, camera: &
     }
 }
 
-/// Batches that a pass of each map of an emission takes, by a batch that is traced for it. The same for every pass.
-fn batches_per_pass(emission: &EmissionPlan, plan: &PhotonPlan, scene: &transport::Scene) -> Vec<u32> {
-    let progressive = emission.maps.iter().filter(|map| map.batches_per_pass.is_some());
-    let kinds = progressive.fold(MapKinds::default(), |kinds, map| kinds.with(map.kind));
-    let landed = if kinds.is_empty() {
-        Vec::new()
-    } else {
-        let batch = emission.aim.emit_batch(&scene.lights, plan.seed, 0, 0);
-        emission.aim.trace_batch(scene, &batch, kinds, plan, 0, 0)
-    };
-    let count = |map: &MapPlan| landed.iter().filter(|(kind, _)| *kind == map.kind).count();
-    emission.maps.iter().map(|map| map.batches_for(count(map))).collect()
+/// Decides how many batches a pass emits for each map, by one batch that is traced for it. The same for every pass.
+fn size_passes(emission: &mut EmissionPlan, plan: &PhotonPlan, scene: &transport::Scene) {
+    let kinds = emission.maps.iter().map(|map| map.kind);
+    let kinds = kinds.fold(MapKinds::default(), MapKinds::with);
+    let batch = emission.aim.emit_batch(&scene.lights, plan.seed, 0, 0);
+    let landed = emission.aim.trace_batch(scene, &batch, kinds, plan, 0, 0);
+    for map in &mut emission.maps {
+        let count = landed.iter().filter(|(kind, _)| *kind == map.kind).count();
+        map.batches = Some(map.batches_for(count));
+    }
 }

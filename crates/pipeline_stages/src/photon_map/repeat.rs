@@ -5,8 +5,7 @@ use pipeline_core::RenderClock;
 /// At the end of a pass of a progressive render, asks for the photons of the next.
 pub(super) fn ask_for_photons(plan: Res<PhotonPlan>, mut clock: ResMut<RenderClock>) {
     let done = clock.waves_done + 1;
-    let mut maps = plan.emissions.iter().flat_map(|emission| &emission.maps);
-    let is_progressive = maps.any(|map| map.batches_per_pass.is_some());
+    let is_progressive = plan.emissions.iter().any(|emission| emission.is_progressive);
     if is_progressive && done < clock.waves_total && done.is_multiple_of(clock.waves_per_pass.max(1)) {
         clock.photons_pending += 1;
     }

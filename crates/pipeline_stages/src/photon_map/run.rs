@@ -36,6 +36,8 @@ pub(super) struct PhotonPlan {
 #[derive(Clone, Debug)]
 pub(super) struct EmissionPlan {
     pub(super) aim: Aim,
+    /// Whether every pass has photons of its own; else one emission serves all passes.
+    pub(super) is_progressive: bool,
     pub(super) maps: Vec<MapPlan>,
 }
 
@@ -47,9 +49,8 @@ pub(super) struct MapPlan {
     pub(super) wanted: u64,
     /// How the map of pass 0 is read.
     pub(super) density: DensitySettings,
-    /// Batches that every pass emits, where each pass has photons of its own; else one map serves all passes, and its
-    /// batches follow from what lands.
-    pub(super) batches_per_pass: Option<u32>,
+    /// Batches to emit, where that is fixed beforehand, as for progressive maps; else it follows from what lands.
+    pub(super) batches: Option<u32>,
 }
 
 /// What photons are aimed at when they leave their lights.
@@ -120,8 +121,6 @@ impl Aim {
 /// What is under way in one pass. Written by `begin_photons`, taken by `finish_photons`.
 #[derive(Resource, Clone, Debug)]
 pub(super) struct PhotonRun {
-    /// Number of the pass: chooses the random numbers, and how far the radius has shrunk.
-    pub(super) pass: u32,
     /// Emissions that are not over; the first one is under way.
     pub(super) emissions: VecDeque<EmissionRun>,
     /// Maps whose photons have all landed.
@@ -132,6 +131,8 @@ pub(super) struct PhotonRun {
 #[derive(Clone, Debug)]
 pub(super) struct EmissionRun {
     pub(super) aim: Aim,
+    /// The pass that it is for: chooses the random numbers, and how far the radius has shrunk. 0 where it serves all.
+    pub(super) pass: u32,
     /// Paths emitted so far.
     pub(super) emitted: u32,
     /// The batch between emission and tracing.
@@ -143,6 +144,8 @@ pub(super) struct EmissionRun {
 #[derive(Clone, Debug)]
 pub(super) struct MapRun {
     pub(super) plan: MapPlan,
+    /// The pass that it is for.
+    pub(super) pass: u32,
     /// Photons that landed, in (path, bounce) order; flux not yet divided by the number emitted.
     pub(super) photons: Vec<Photon>,
     /// Paths that were emitted for them, once all have landed.
@@ -154,19 +157,19 @@ impl PhotonRun {
     ///
     /// - `all`: also the maps that serve every pass.
     pub(super) fn new(plan: &PhotonPlan, pass: u32, all: bool) -> Self {
+        let needed = plan.emissions.iter().filter(|emission| all || emission.is_progressive);
         let emission = |emission: &EmissionPlan| {
-            let wanted = emission.maps.iter().filter(|map| all || map.batches_per_pass.is_some());
-            let maps: Vec<MapRun> = wanted.map(|map| MapRun::new(*map)).collect();
-            (!maps.is_empty()).then(|| EmissionRun {
+            let pass = if emission.is_progressive { pass } else { 0 };
+            EmissionRun {
                 aim: emission.aim.clone(),
+                pass,
                 emitted: 0,
                 batch: Vec::new(),
-                maps,
-            })
+                maps: emission.maps.iter().map(|map| MapRun::new(*map, pass)).collect(),
+            }
         };
         Self {
-            pass,
-            emissions: plan.emissions.iter().filter_map(emission).collect(),
+            emissions: needed.map(emission).collect(),
             landed: Vec::new(),
         }
     }
@@ -208,9 +211,10 @@ impl EmissionRun {
 }
 
 impl MapRun {
-    pub(super) fn new(plan: MapPlan) -> Self {
+    pub(super) fn new(plan: MapPlan, pass: u32) -> Self {
         Self {
             plan,
+            pass,
             photons: Vec::new(),
             emitted: None,
         }
@@ -218,17 +222,16 @@ impl MapRun {
 
     /// True when enough photons have landed, or too many were emitted for more to be worth waiting for.
     fn has_enough(&self, emitted: u32) -> bool {
-        match self.plan.batches_per_pass {
+        match self.plan.batches {
             Some(batches) => emitted / BATCH_PATHS >= batches,
             None => self.photons.len() as u64 >= self.plan.wanted || u64::from(emitted) >= self.plan.most_emitted(),
         }
     }
 
-    /// How the map is read in a pass.
-    pub(super) fn density(&self, pass: u32) -> DensitySettings {
-        let is_progressive = self.plan.batches_per_pass.is_some();
+    /// How the map is read.
+    pub(super) fn density(&self) -> DensitySettings {
         DensitySettings {
-            shrink: if is_progressive { progressive_shrink(pass) } else { 1.0 },
+            shrink: progressive_shrink(self.pass),
             ..self.plan.density
         }
     }

@@ -26,16 +26,18 @@ fn store(world: &mut World, count: u32) {
         filter: DensityFilter::Cone,
         shrink: 1.0,
     };
-    let mut map = MapRun::new(MapPlan {
-        kind: MapKind::Caustic,
-        wanted: u64::from(count),
-        density,
-        batches_per_pass: None,
-    });
+    let mut map = MapRun::new(
+        MapPlan {
+            kind: MapKind::Caustic,
+            wanted: u64::from(count),
+            density,
+            batches: None,
+        },
+        0,
+    );
     map.emitted = Some(16);
     map.photons = (0..count).map(photon).collect();
     let run = PhotonRun {
-        pass: 0,
         emissions: Default::default(),
         landed: vec![map],
     };

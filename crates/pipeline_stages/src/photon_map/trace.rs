@@ -22,14 +22,18 @@ pub(super) fn trace_photons(
     progress: Res<Progress>,
     mut report: ResMut<Report>,
 ) {
-    let pass = run.pass;
     let Some(emission) = run.emissions.front_mut() else {
         return;
     };
     let batch = std::mem::take(&mut emission.batch);
-    let landed = emission
-        .aim
-        .trace_batch(&scene.0, &batch, emission.wanted(), &plan, pass, emission.emitted);
+    let landed = emission.aim.trace_batch(
+        &scene.0,
+        &batch,
+        emission.wanted(),
+        &plan,
+        emission.pass,
+        emission.emitted,
+    );
     emission.take_in(landed);
     emitted.0.add(batch.len() as u64);
     record_items(batch.len());
@@ -50,7 +54,7 @@ pub(super) fn trace_photons(
 fn warn_of_few_photons(emission: &EmissionRun, report: &mut Report) {
     for map in &emission.maps {
         let (kind, landed, wanted) = (map.plan.kind.name(), map.photons.len(), map.plan.wanted);
-        if map.plan.batches_per_pass.is_some() || landed as u64 >= wanted {
+        if map.plan.batches.is_some() || landed as u64 >= wanted {
             continue;
         }
         let emitted = map.emitted.unwrap_or_default();
