@@ -39,14 +39,20 @@ pub(super) struct MapPrims<'w, 's> {
     indirect: Query<'w, 's, (&'static PrimIndex, &'static IndirectPhotonMap)>,
 }
 
+/// What the plan depends on beside the settings of the maps. All of it is there unless something was wrong before.
+#[derive(SystemParam)]
+pub(super) struct Prepared<'w> {
+    settings: Option<Res<'w, RenderSettings>>,
+    scene: Option<Res<'w, TransportScene>>,
+    camera: Option<Res<'w, CameraFrame>>,
+}
+
 /// Decides which photons are needed, and how they will be gathered.
 ///
 /// Without use for them (other methods are chosen, nothing diffuse exists) there is no map, and no system of this stage runs.
 pub(super) fn plan_photons(
     mut commands: Commands,
-    settings: Option<Res<RenderSettings>>,
-    scene: Option<Res<TransportScene>>,
-    camera: Option<Res<CameraFrame>>,
+    prepared: Prepared,
     mut demand: ResMut<PhotonDemand>,
     prims: MapPrims,
     mut clock: ResMut<RenderClock>,
@@ -58,6 +64,11 @@ pub(super) fn plan_photons(
     commands.remove_resource::<ProgressivePasses>();
     clock.photons_pending = 0;
     let demand = std::mem::take(&mut *demand).0;
+    let Prepared {
+        settings,
+        scene,
+        camera,
+    } = prepared;
     let (Some(settings), Some(scene), Some(camera), Some(mut report)) = (settings, scene, camera, report) else {
         return;
     };
