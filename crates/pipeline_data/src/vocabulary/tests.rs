@@ -1,7 +1,8 @@
 use super::{Diffuse, TextureChannel, TextureEncoding, TextureFilter, TextureMap, TextureWrap, VocabularyPlugin};
 use bevy_app::App;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
-use scene_format::{ComponentInfo, Options, Schema, load_str, schema_text};
+use scene_format::{ComponentInfo, Options, Schema, flatten_ron, load_str, schema_text};
+use std::path::{Path, PathBuf};
 
 /// What of the vocabulary exists, as the documentation of the scene format lists it: `-` is required, `?` optional.
 const TABLE: &str = "
@@ -272,4 +273,49 @@ fn textures_count_in_the_hash_and_survive_flattening() {
         let explained = scene_format::explain(scene, "/Scene.normal_texture").expect("an opinion");
         assert!(explained.contains("n.png") && explained.contains("wins"), "{explained}");
     });
+}
+
+fn models() -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/assets/gltf");
+    folder.canonicalize().expect("the folder of models is there")
+}
+
+/// What a model file composes to, written as one layer and composed again, is the same.
+#[test]
+fn flattened_models_read_back() {
+    let folder = models();
+    let mut read = 0;
+    for name in names_in(&folder) {
+        for file in names_in(&folder.join(&name)) {
+            if !file.ends_with(".gltf") && !file.ends_with(".glb") {
+                continue;
+            }
+            let scene = format!(r#"Layer(prims: {{"/Model": Def(references: ["{name}/{file}"])}})"#);
+            let as_file = folder.join("scene.ron");
+            let compose = |text: &str| {
+                let loaded =
+                    with_schema(|schema| load_str(&as_file.to_string_lossy(), text, schema, &Options::default()));
+                loaded.unwrap_or_else(|errors| panic!("{file}: {errors}"))
+            };
+            let first = compose(&scene);
+            let again = compose(&flatten_ron(&first));
+            assert!(first.prims.len() > 1 && again.hash == first.hash, "{file}");
+            let paths =
+                |scene: &scene_format::Scene| scene.prims.iter().map(|prim| prim.path.clone()).collect::<Vec<_>>();
+            assert_eq!(paths(&again), paths(&first), "{file}");
+            read += 1;
+        }
+    }
+    assert!(read > 20, "{read}");
+}
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let Ok(entries) = folder.read_dir() else {
+        return Vec::new();
+    };
+    let mut names: Vec<String> = entries
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .collect();
+    names.sort();
+    names
 }
