@@ -75,7 +75,7 @@ fn components_are_those_of_the_table() {
 #[test]
 fn everything_is_documented_and_every_number_has_a_range_or_needs_none() {
     // Any finite number makes sense here.
-    const FREE: [&str; 9] = [
+    const FREE: [&str; 10] = [
         "Transform.translate",
         "Transform.rotate",
         "Transform.scale",
@@ -85,6 +85,7 @@ fn everything_is_documented_and_every_number_has_a_range_or_needs_none() {
         "LookAt.up",
         "Render.seed",
         "Conductor.metal",
+        "Principled.normal_scale",
     ];
     with_schema(|schema| {
         for component in schema.components() {
@@ -318,4 +319,25 @@ fn names_in(folder: &Path) -> Vec<String> {
         .collect();
     names.sort();
     names
+}
+
+#[test]
+fn normals_of_a_model_may_lean_the_other_way() {
+    let model = r#"{"asset": {"version": "2.0"}, "images": [{"uri": "a.png"}], "textures": [{"source": 0}],
+        "materials": [{"normalTexture": {"index": 0, "scale": -2}}], "nodes": [{}], "scenes": [{"nodes": [0]}]}"#;
+    let folder = tempfile::tempdir().expect("a folder to write to");
+    std::fs::write(folder.path().join("a.gltf"), model).expect("a file to write");
+    let options = Options {
+        check_assets: false,
+        ..Options::default()
+    };
+    let name = folder.path().join("scene.ron");
+    let text = r#"Layer(prims: {"/A": Def(references: ["a.gltf"])})"#;
+    let loaded = with_schema(|schema| load_str(&name.to_string_lossy(), text, schema, &options));
+    let scene = loaded.unwrap_or_else(|errors| panic!("{errors}"));
+    assert!(
+        flatten_ron(&scene).contains("normal_scale: -2"),
+        "{}",
+        flatten_ron(&scene)
+    );
 }

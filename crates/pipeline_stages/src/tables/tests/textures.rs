@@ -217,6 +217,8 @@ fn a_flat_normal_map_changes_no_bit_and_a_tilted_one_tilts() {
     assert!((mirrored - Vec3::new(-0.6, 0.0, 0.8)).length() < 1e-6, "{mirrored}");
     let flattened = quad("Principled: (normal_texture: \"tilted.exr\", normal_scale: 0)");
     assert_eq!(surface(&flattened, (0.3, 0.2)).1, Vec3::Z);
+    let other_way = quad("Principled: (normal_texture: \"tilted.exr\", normal_scale: -1)");
+    assert!((surface(&other_way, (0.3, 0.2)).1 - Vec3::new(-0.6, 0.0, 0.8)).length() < 1e-6);
 }
 
 #[test]
