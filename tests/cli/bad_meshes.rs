@@ -1,6 +1,7 @@
 //! Mesh files with a mistake.
 
 use crate::program::{BALLS, Folder, Ran};
+use std::path::Path;
 
 /// Checks the good scene with a mesh of this text in it.
 fn check(mesh: &str) -> Ran {
@@ -51,6 +52,36 @@ fn degenerate_triangles_are_a_warning() {
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
     assert!(ran.stderr.contains("warning"), "{}", ran.stderr);
     assert!(ran.stderr.contains("mesh.obj"), "{}", ran.stderr);
+}
+
+/// A model that is not whole or does not fit together: the message names it, the part of it and the line that brings it.
+#[test]
+fn broken_models_are_refused_with_their_part() {
+    let broken = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/assets/broken/gltf");
+    for (file, expected) in [
+        (
+            "khronos-validator/node/node_loop.gltf",
+            "nodes[0]: the node is its own ancestor",
+        ),
+        ("assimp/wrongTypes/badNumber.gltf", "materials[0].normalTexture.scale"),
+        ("magnum/scene-default-oob.gltf", "there is no scene 0"),
+        ("magnum/mesh-invalid-primitive.gltf", "missing field `attributes`"),
+        (
+            "tinygltf/BoundsChecking/invalid-primitive-indices.gltf",
+            "there is no buffer 0",
+        ),
+    ] {
+        let name = file.rsplit('/').next().unwrap();
+        let folder = Folder::with_scene(&BALLS.replace("Sphere: (radius: 0.5)", &format!("references: [\"{name}\"]")));
+        folder.write(name, std::fs::read(broken.join(file)).unwrap());
+        let ran = folder.run("check scene.ron");
+        assert_eq!(ran.code, Some(2), "{file}\n{}", ran.stderr);
+        assert!(
+            ran.stderr.contains(name) && ran.stderr.contains(expected),
+            "{file}\n{}",
+            ran.stderr
+        );
+    }
 }
 
 #[test]

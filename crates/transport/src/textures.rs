@@ -173,7 +173,7 @@ pub enum TexturedBsdf {
 pub struct NormalMap {
     /// Red, green and blue from 0 to 1 stand for −1 to 1: to the right, upward, outward.
     pub texture: Box<Texture>,
-    /// Factor of the first two, ≥ 0.
+    /// Factor of the first two; negative makes bumps of dents.
     pub scale: f32,
 }
 

@@ -98,8 +98,8 @@ pub struct Principled {
     pub alpha_cutoff: Option<f32>,
     /// A picture of normals in the frame of the texture coordinates: red to the right, green up, blue outward, 0.5 for 0.
     pub normal_texture: Option<TextureMap>,
-    /// How far the normals of `normal_texture` lean; 0 is not at all.
-    #[reflect(@Range::at_least(0.0))]
+    /// How far the normals of `normal_texture` lean; 0 is not at all, and below 0 they lean the other way: dents
+    /// become bumps.
     pub normal_scale: f32,
 }
 

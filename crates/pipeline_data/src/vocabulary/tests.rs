@@ -1,7 +1,8 @@
 use super::{Diffuse, TextureChannel, TextureEncoding, TextureFilter, TextureMap, TextureWrap, VocabularyPlugin};
 use bevy_app::App;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
-use scene_format::{ComponentInfo, Options, Schema, load_str, schema_text};
+use scene_format::{ComponentInfo, Options, Schema, flatten_ron, load_str, schema_text};
+use std::path::{Path, PathBuf};
 
 /// What of the vocabulary exists, as the documentation of the scene format lists it: `-` is required, `?` optional.
 const TABLE: &str = "
@@ -74,7 +75,7 @@ fn components_are_those_of_the_table() {
 #[test]
 fn everything_is_documented_and_every_number_has_a_range_or_needs_none() {
     // Any finite number makes sense here.
-    const FREE: [&str; 9] = [
+    const FREE: [&str; 10] = [
         "Transform.translate",
         "Transform.rotate",
         "Transform.scale",
@@ -84,6 +85,7 @@ fn everything_is_documented_and_every_number_has_a_range_or_needs_none() {
         "LookAt.up",
         "Render.seed",
         "Conductor.metal",
+        "Principled.normal_scale",
     ];
     with_schema(|schema| {
         for component in schema.components() {
@@ -272,4 +274,70 @@ fn textures_count_in_the_hash_and_survive_flattening() {
         let explained = scene_format::explain(scene, "/Scene.normal_texture").expect("an opinion");
         assert!(explained.contains("n.png") && explained.contains("wins"), "{explained}");
     });
+}
+
+fn models() -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/assets/gltf");
+    folder.canonicalize().expect("the folder of models is there")
+}
+
+/// What a model file composes to, written as one layer and composed again, is the same.
+#[test]
+fn flattened_models_read_back() {
+    let folder = models();
+    let mut read = 0;
+    for name in names_in(&folder) {
+        for file in names_in(&folder.join(&name)) {
+            if !file.ends_with(".gltf") && !file.ends_with(".glb") {
+                continue;
+            }
+            let scene = format!(r#"Layer(prims: {{"/Model": Def(references: ["{name}/{file}"])}})"#);
+            let as_file = folder.join("scene.ron");
+            let compose = |text: &str| {
+                let loaded =
+                    with_schema(|schema| load_str(&as_file.to_string_lossy(), text, schema, &Options::default()));
+                loaded.unwrap_or_else(|errors| panic!("{file}: {errors}"))
+            };
+            let first = compose(&scene);
+            let again = compose(&flatten_ron(&first));
+            assert!(first.prims.len() > 1 && again.hash == first.hash, "{file}");
+            let paths =
+                |scene: &scene_format::Scene| scene.prims.iter().map(|prim| prim.path.clone()).collect::<Vec<_>>();
+            assert_eq!(paths(&again), paths(&first), "{file}");
+            read += 1;
+        }
+    }
+    assert!(read > 20, "{read}");
+}
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let Ok(entries) = folder.read_dir() else {
+        return Vec::new();
+    };
+    let mut names: Vec<String> = entries
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn normals_of_a_model_may_lean_the_other_way() {
+    let model = r#"{"asset": {"version": "2.0"}, "images": [{"uri": "a.png"}], "textures": [{"source": 0}],
+        "materials": [{"normalTexture": {"index": 0, "scale": -2}}], "nodes": [{}], "scenes": [{"nodes": [0]}]}"#;
+    let folder = tempfile::tempdir().expect("a folder to write to");
+    std::fs::write(folder.path().join("a.gltf"), model).expect("a file to write");
+    let options = Options {
+        check_assets: false,
+        ..Options::default()
+    };
+    let name = folder.path().join("scene.ron");
+    let text = r#"Layer(prims: {"/A": Def(references: ["a.gltf"])})"#;
+    let loaded = with_schema(|schema| load_str(&name.to_string_lossy(), text, schema, &options));
+    let scene = loaded.unwrap_or_else(|errors| panic!("{errors}"));
+    assert!(
+        flatten_ron(&scene).contains("normal_scale: -2"),
+        "{}",
+        flatten_ron(&scene)
+    );
 }

@@ -85,18 +85,15 @@ fn leaf(value: &dyn PartialReflect, asset: &dyn Fn(&str) -> String) -> Option<St
             })*
         };
     }
-    macro_rules! matrices {
-        ($($kind:ty)*) => {
-            $(if let Some(found) = value.try_downcast_ref::<$kind>() {
-                let column = |column: &[_]| format!("({})", join(column.iter().map(ToString::to_string)));
-                return Some(format!("({})", join(found.to_cols_array_2d().iter().map(|c| column(c)))));
-            })*
-        };
-    }
     // The shortest text that gives the same number again.
     plain!(bool f32 f64 u8 u16 u32 u64 usize i8 i16 i32 i64 isize);
     vectors!(Vec2 Vec3 Vec4 Quat DVec2 DVec3 DVec4 DQuat UVec2 UVec3);
-    matrices!(DMat4);
+    if let Some(matrix) = value.try_downcast_ref::<DMat4>() {
+        return Some(format!(
+            "({})",
+            join(matrix.to_cols_array().iter().map(ToString::to_string))
+        ));
+    }
     if let Some(text) = value.try_downcast_ref::<String>() {
         return Some(quoted(text));
     }

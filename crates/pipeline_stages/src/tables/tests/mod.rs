@@ -1,5 +1,6 @@
 //! Whole scenes through `Load` and `Prepare`, one mistake each.
 
+mod broken;
 mod lights;
 mod materials;
 mod settings;

@@ -217,6 +217,8 @@ fn a_flat_normal_map_changes_no_bit_and_a_tilted_one_tilts() {
     assert!((mirrored - Vec3::new(-0.6, 0.0, 0.8)).length() < 1e-6, "{mirrored}");
     let flattened = quad("Principled: (normal_texture: \"tilted.exr\", normal_scale: 0)");
     assert_eq!(surface(&flattened, (0.3, 0.2)).1, Vec3::Z);
+    let other_way = quad("Principled: (normal_texture: \"tilted.exr\", normal_scale: -1)");
+    assert!((surface(&other_way, (0.3, 0.2)).1 - Vec3::new(-0.6, 0.0, 0.8)).length() < 1e-6);
 }
 
 #[test]
@@ -242,6 +244,36 @@ fn colours_of_vertices_multiply() {
     };
     assert_eq!(alpha(", Principled: ()"), 1.0);
     assert_eq!(alpha(", Principled: (alpha: 0.5)"), 0.25);
+}
+
+/// glTF: an opaque material ignores alpha, that of vertices as well.
+#[test]
+fn a_model_is_as_opaque_as_it_says() {
+    let alpha = |mode: &str| {
+        let (text, buffer) = coloured_quad();
+        let with_material = text
+            .replace("\"indices\": 2", "\"indices\": 2, \"material\": 0")
+            .replace(
+                "\"meshes\"",
+                &format!("\"nodes\": [{{\"mesh\": 0}}], \"materials\": [{{{mode}}}], \"meshes\""),
+            );
+        let write = |folder: &Path| {
+            std::fs::write(folder.join("model.gltf"), with_material).unwrap();
+            std::fs::write(folder.join("quad.bin"), buffer).unwrap();
+        };
+        let model = "\"/A\": Def(references: [\"model.gltf\"]),\n";
+        let app = prepare_files(&[model, SKY, CAMERA, RENDER], write, |_| ());
+        let alpha = scene(&app).alpha(&point(&app, (0.5, -0.5)));
+        (alpha, scene(&app).has_alpha())
+    };
+    assert_eq!(alpha(""), (1.0, false));
+    assert_eq!(
+        alpha(r#""alphaMode": "OPAQUE", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5]}"#),
+        (1.0, false)
+    );
+    assert_eq!(alpha(r#""alphaMode": "BLEND""#), (0.5, true));
+    assert_eq!(alpha(r#""alphaMode": "MASK""#), (1.0, true));
+    assert_eq!(alpha(r#""alphaMode": "MASK", "alphaCutoff": 0.75"#), (0.0, true));
 }
 
 #[test]
