@@ -1,10 +1,14 @@
-//! Full-size comparisons with the images of an independent renderer, and of methods with each other.
+//! Comparisons with the images of an independent renderer, and of methods with each other.
 //!
-//! These take minutes, so the suite leaves them out; `.ci/full` runs them, in release mode.
+//! Those at full size take minutes, so the suite leaves them out; `.ci/full` runs them, in release mode.
 
 #![expect(clippy::print_stdout, reason = "a full comparison reports its figures")]
 
-use film::{ExrImage, RgbImage, block_means, compare, read_exr};
+mod significance;
+
+use film::{BATCHES, ExrImage, Image, Metadata, RgbImage, block_means, compare, difference, read_exr, write_exr};
+use significance::{Measured, RUNS, SIDES, Verdict, test_blocks};
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -43,48 +47,75 @@ fn beauty(image: &ExrImage) -> RgbImage {
     image.rgb("").expect("R, G, B")
 }
 
-/// A path tracer with independent samples has relMSE `k`/samples; ours may have 1.2 times that, plus the reference's own.
-fn assert_equal_samples(name: &str, k: f64, own: f64) {
-    let image = render(name, "traced", &["--samples", "256"]);
-    let found = compare(&beauty(&image), &reference(name), 0).expect("same size");
-    println!(
-        "{name}: means off by {:?}, relMSE {}",
+/// Asserts what `passes` says; a failure leaves image, reference and difference (image − reference) side by side.
+fn assert_alike(name: &str, passes: bool, image: &RgbImage, reference: &RgbImage, found: &str) {
+    if passes {
+        return;
+    }
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("failures");
+    std::fs::create_dir_all(&folder).expect("a folder for images");
+    let off = difference(image, reference).expect("same size");
+    for (label, image) in [("image", image), ("reference", reference), ("difference", &off)] {
+        let path = folder.join(format!("{name}-{label}.exr"));
+        write_exr(&path, &Image::from_rgb(image), &Metadata::default()).expect("a writable folder");
+    }
+    panic!("{name}: {found}; see {}", folder.display());
+}
+
+/// Samples of the comparison at equal samples, and of that of blocks.
+const SAMPLES: u32 = 256;
+
+/// The bias that means of whole images may have.
+const MEANS: f64 = 0.005;
+
+/// What relMSE may exceed that of a path tracer with independent samples by.
+const EXCESS: f64 = 1.2;
+
+/// What every other block, and every twentieth, may be off by, relative to its own mean in the reference.
+const BLOCKS: [f64; 2] = [0.02, 0.05];
+
+/// Compares means, blocks of 8×8 pixels and the relMSE with the reference's.
+///
+/// - `k`: a path tracer with independent samples has relMSE `k`/samples.
+/// - `own`: relMSE of the reference.
+fn assert_meets_reference(name: &str, k: f64, own: f64) {
+    let image = beauty(&render(name, "traced", &["--samples", &SAMPLES.to_string()]));
+    let reference = reference(name);
+    let found = compare(&image, &reference, 0).expect("same size");
+    let off = Quantiles::of(&block_means(&image, 8), &block_means(&reference, 8));
+    let limit = EXCESS * k / f64::from(SAMPLES) + own;
+    let found_text = format!(
+        "means off by {:?}, relMSE {:.3e} of {limit:.3e}, {off}",
         found.relative_difference, found.rel_mse
     );
-    assert!(
-        found.relative_difference.iter().all(|d| d.abs() < 0.005),
-        "{name}: {found:?}"
-    );
-    let limit = 1.2 * k / 256.0 + own;
-    assert!(
-        found.rel_mse <= limit,
-        "{name}: relMSE {} exceeds {limit}",
-        found.rel_mse
-    );
+    println!("{name}: {found_text}");
+    let means = found.relative_difference.iter().all(|d| d.abs() < MEANS);
+    let passes = means && found.rel_mse <= limit && off.within(BLOCKS);
+    assert_alike(name, passes, &image, &reference, &found_text);
 }
 
 #[test]
 #[ignore = "takes minutes; .ci/full runs it"]
-fn env_spheres_meets_the_reference_at_equal_samples() {
-    assert_equal_samples("env_spheres", 1.35, 0.000_26);
+fn env_spheres_meets_the_reference() {
+    assert_meets_reference("env_spheres", 1.35, 0.000_26);
 }
 
 #[test]
 #[ignore = "takes minutes; .ci/full runs it"]
-fn dof_motion_meets_the_reference_at_equal_samples() {
-    assert_equal_samples("dof_motion", 0.3, 0.000_06);
+fn dof_motion_meets_the_reference() {
+    assert_meets_reference("dof_motion", 0.3, 0.000_06);
 }
 
 #[test]
 #[ignore = "takes minutes; .ci/full runs it"]
-fn cornell_meets_the_reference_at_equal_samples() {
-    assert_equal_samples("cornell", 1.0, 0.000_07);
+fn cornell_meets_the_reference() {
+    assert_meets_reference("cornell", 1.0, 0.000_07);
 }
 
 #[test]
 #[ignore = "takes minutes; .ci/full runs it"]
-fn cornell_glass_meets_the_reference_at_equal_samples() {
-    assert_equal_samples("cornell_glass", 8.8, 0.000_13);
+fn cornell_glass_meets_the_reference() {
+    assert_meets_reference("cornell_glass", 8.8, 0.000_13);
 }
 
 #[test]
@@ -137,39 +168,63 @@ fn traced_ring_has_the_mean_of_the_reference() {
     }
 }
 
-/// Relative difference of each block from that of the reference, the largest of the channels, in rising order.
-fn block_errors(blocks: &RgbImage, reference: &RgbImage) -> Vec<f64> {
-    let relative = |ours: f32, theirs: f32| match f64::from(ours) - f64::from(theirs) {
-        0.0 => 0.0,
-        difference => difference.abs() / f64::from(theirs),
-    };
-    let error = |(ours, theirs): (&[f32; 3], &[f32; 3])| {
-        let channel = |c: usize| relative(ours[c], theirs[c]);
-        (0..3).map(channel).fold(0.0, f64::max)
-    };
-    let mut errors: Vec<f64> = blocks.pixels.iter().zip(&reference.pixels).map(error).collect();
-    errors.sort_by(f64::total_cmp);
-    errors
+/// How far blocks are off, relative to their own means in the reference, the largest of the channels.
+struct Quantiles {
+    count: usize,
+    median: f64,
+    high: f64,
+    most: f64,
 }
 
-/// Of blocks of 8×8 pixels, every other one may be off by more than 2 %, and every twentieth by more than 4 %, of its own
-/// mean in the reference.
+impl Quantiles {
+    fn of(blocks: &RgbImage, reference: &RgbImage) -> Self {
+        assert_eq!(blocks.pixels.len(), reference.pixels.len());
+        let relative = |ours: f32, theirs: f32| match f64::from(ours) - f64::from(theirs) {
+            0.0 => 0.0,
+            difference => difference.abs() / f64::from(theirs),
+        };
+        let error = |(ours, theirs): (&[f32; 3], &[f32; 3])| {
+            let channel = |c: usize| relative(ours[c], theirs[c]);
+            (0..3).map(channel).fold(0.0, f64::max)
+        };
+        let mut errors: Vec<f64> = blocks.pixels.iter().zip(&reference.pixels).map(error).collect();
+        errors.sort_by(f64::total_cmp);
+        let quantile = |share: f64| errors[(share * (errors.len() - 1) as f64).round() as usize];
+        Self {
+            count: errors.len(),
+            median: quantile(0.5),
+            high: quantile(0.95),
+            most: quantile(1.0),
+        }
+    }
+
+    fn within(&self, [median, high]: [f64; 2]) -> bool {
+        self.median < median && self.high < high
+    }
+}
+
+impl fmt::Display for Quantiles {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [median, high, most] = [self.median, self.high, self.most].map(|share| 100.0 * share);
+        write!(
+            f,
+            "{} blocks off by {median:.2} % at the median, {high:.2} % at the 95th percentile, {most:.1} % at most",
+            self.count
+        )
+    }
+}
+
+/// The same for blocks of the references of others.
+const BLOCKS_OF_OTHERS: [f64; 2] = [0.02, 0.04];
+
 fn assert_blocks_meet_reference(name: &str, samples: &str) {
     let image = render(name, "blocks", &["--samples", samples]);
     let (blocks, reference) = (block_means(&beauty(&image), 8), stored(name, "blocks.exr"));
     let found = compare(&blocks, &reference, 0).expect("same size");
-    let errors = block_errors(&blocks, &reference);
-    let quantile = |share: f64| errors[(share * (errors.len() - 1) as f64).round() as usize];
-    let (median, high) = (quantile(0.5), quantile(0.95));
-    println!(
-        "{name}: {} blocks off by {:.2} % at the median, {:.2} % at the 95th percentile, {:.1} % at most; means off by {:?}",
-        errors.len(),
-        100.0 * median,
-        100.0 * high,
-        100.0 * quantile(1.0),
-        found.relative_difference,
-    );
-    assert!(median < 0.02 && high < 0.04, "{name}: {median}, {high}");
+    let off = Quantiles::of(&blocks, &reference);
+    let found_text = format!("{off}; means off by {:?}", found.relative_difference);
+    println!("{name}: {found_text}");
+    assert_alike(name, off.within(BLOCKS_OF_OTHERS), &blocks, &reference, &found_text);
 }
 
 #[test]
@@ -243,4 +298,64 @@ fn photon_map_meets_the_reference_on_cornell_glass() {
 #[ignore = "takes minutes; .ci/full runs it"]
 fn photon_map_meets_the_reference_on_the_ring() {
     assert_photon_map_meets_reference("ring", "256", 0.03);
+}
+
+/// Renders a small scene and tests its values against those of the reference, block by block.
+fn significance_of(name: &str, label: &str, arguments: &[&str]) -> (Vec<Verdict>, ExrImage) {
+    let image = render(name, label, &[&["--samples", "256"], arguments].concat());
+    let ours = Measured::new(&image, f64::from(BATCHES));
+    let theirs = Measured::new(
+        &read_exr(&scene(name).join("reference.exr")).expect("a valid image"),
+        RUNS,
+    );
+    let verdicts = SIDES.map(|side| test_blocks(&ours, &theirs, side)).into();
+    (verdicts, image)
+}
+
+/// Asserts that a small scene differs from its reference by noise alone, and that the noise is no more than allowed.
+///
+/// - `k`: a path tracer with independent samples has relMSE `k`/samples.
+fn assert_differs_by_noise(name: &str, k: f64) {
+    let (verdicts, image) = significance_of(name, "noise", &[]);
+    let (image, stored) = (
+        beauty(&image),
+        read_exr(&scene(name).join("reference.exr")).expect("a valid image"),
+    );
+    let reference = beauty(&stored);
+    let found = compare(&image, &reference, 0).expect("same size");
+    let limit = EXCESS * k / f64::from(SAMPLES) + Measured::new(&stored, RUNS).own_rel_mse();
+    let found_text = format!(
+        "means off by {:?}, relMSE {:.3e} of {limit:.3e}, {verdicts:#?}",
+        found.relative_difference, found.rel_mse
+    );
+    println!("{name}: {found_text}");
+    let passes = found.rel_mse <= limit && verdicts.iter().all(Verdict::passes);
+    assert_alike(name, passes, &image, &reference, &found_text);
+}
+
+#[test]
+fn small_interior_differs_from_its_reference_by_noise() {
+    assert_differs_by_noise("small_interior", 0.42);
+}
+
+#[test]
+fn small_materials_differ_from_their_reference_by_noise() {
+    assert_differs_by_noise("small_materials", 0.31);
+}
+
+#[test]
+fn small_lens_differs_from_its_reference_by_noise() {
+    assert_differs_by_noise("small_lens", 0.18);
+}
+
+/// What the tests above are worth: three hundredths more albedo of one thing must not pass for noise.
+#[test]
+fn an_albedo_wrong_by_three_percent_is_more_than_noise() {
+    let (verdicts, _) = significance_of(
+        "small_lens",
+        "wrong",
+        &["--set", "/Scene/floor.Diffuse.albedo=(0.515, 0.4635, 0.412)"],
+    );
+    println!("{verdicts:#?}");
+    assert!(!verdicts.iter().all(Verdict::passes), "{verdicts:#?}");
 }
