@@ -324,8 +324,9 @@ fn assert_differs_by_noise(name: &str, k: f64) {
     let reference = beauty(&stored);
     let found = compare(&image, &reference, 0).expect("same size");
     let limit = EXCESS * k / f64::from(SAMPLES) + Measured::new(&stored, RUNS).own_rel_mse();
+    let verdicts_text = verdicts.iter().map(Verdict::to_string).collect::<Vec<_>>().join("; ");
     let found_text = format!(
-        "means off by {:?}, relMSE {:.3e} of {limit:.3e}, {verdicts:#?}",
+        "means off by {:?}, relMSE {:.3e} of {limit:.3e}, {verdicts_text}",
         found.relative_difference, found.rel_mse
     );
     println!("{name}: {found_text}");

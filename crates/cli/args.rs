@@ -1,5 +1,5 @@
 use crate::parse;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -33,6 +33,8 @@ pub(crate) enum Command {
     Stages(StagesArgs),
     /// Render a scene and print what every system cost
     Profile(ProfileArgs),
+    /// Draw the photons of a scene as points, or write them to a file
+    Photons(PhotonsArgs),
     /// Measure how far an image is from a reference
     Compare(CompareArgs),
 }
@@ -104,6 +106,9 @@ pub(crate) struct RenderArgs {
     /// Write a timeline of all systems, for Perfetto
     #[arg(long, value_name = "FILE.json")]
     pub(crate) trace: Option<PathBuf>,
+    /// Take photons from a file that `pipeline photons` wrote, instead of tracing them; changes no bit of the image
+    #[arg(long, value_name = "FILE.photons")]
+    pub(crate) photons: Option<PathBuf>,
     /// Go on from where the same command was interrupted
     #[arg(long)]
     pub(crate) resume: bool,
@@ -177,6 +182,69 @@ pub(crate) struct StagesArgs {
     /// Print a Graphviz graph
     #[arg(long)]
     pub(crate) dot: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(
+    after_help = ".png draws the photons over the scene; .ply is a point cloud for MeshLab or Blender; \
+                  .photons is for `run --photons`."
+)]
+pub(crate) struct PhotonsArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// A file to write, .png, .ply or .photons; may be given several times
+    #[arg(short, long = "output", value_name = "FILE", required = true, value_parser = parse::photon_output)]
+    pub(crate) output: Vec<PathBuf>,
+    /// A map to show; may be given several times [default: all]
+    #[arg(long, value_name = "MAP", value_enum)]
+    pub(crate) map: Vec<PhotonMapName>,
+    /// What the colour of a photon tells
+    #[arg(long, value_name = "BY", value_enum, default_value_t = PhotonColour::Flux)]
+    pub(crate) colour: PhotonColour,
+    /// Pixels of the whole film, in place of the scene's
+    #[arg(long, value_name = "WxH", value_parser = parse::resolution)]
+    pub(crate) resolution: Option<[u32; 2]>,
+    /// Draw a part only: first pixel, and the pixel after the last
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse::crop)]
+    pub(crate) crop: Option<[u32; 4]>,
+    /// Threads to use; changes no bit of the photons [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=parse::MAX_THREADS))]
+    pub(crate) threads: Option<u16>,
+    /// Seed of all random numbers, in place of the scene's
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Show nothing but warnings and errors
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
+}
+
+/// A photon map, on the command line.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PhotonMapName {
+    Direct,
+    Caustic,
+    Indirect,
+}
+
+impl From<PhotonMapName> for transport::MapKind {
+    fn from(name: PhotonMapName) -> Self {
+        match name {
+            PhotonMapName::Direct => Self::Direct,
+            PhotonMapName::Caustic => Self::Caustic,
+            PhotonMapName::Indirect => Self::Indirect,
+        }
+    }
+}
+
+/// What the colour of a photon tells.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PhotonColour {
+    /// Its flux
+    Flux,
+    /// The map that it is in
+    Map,
+    /// Events since the light
+    Bounce,
 }
 
 #[derive(Args, Debug)]

@@ -17,6 +17,10 @@ mod graph;
 mod interrupt;
 mod outputs;
 mod parse;
+mod photon_colour;
+mod photon_picture;
+mod photon_ply;
+mod photons;
 mod profile;
 mod profiling;
 mod progress;
@@ -40,6 +44,7 @@ fn main() -> ExitCode {
         Command::Schema(options) => schema::execute(&options),
         Command::Stages(options) => stages::execute(&options),
         Command::Profile(options) => profile::execute(&options),
+        Command::Photons(options) => photons::execute(&options),
         Command::Compare(options) => compare::execute(&options),
     };
     exit::conclude(ended)

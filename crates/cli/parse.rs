@@ -36,6 +36,34 @@ impl Format {
     }
 }
 
+/// A file to write photons to.
+pub(crate) fn photon_output(text: &str) -> Result<PathBuf, String> {
+    match PhotonFormat::of(Path::new(text)) {
+        Some(_) => Ok(text.into()),
+        None => Err("the name must end in .png, .ply or .photons".into()),
+    }
+}
+
+/// A kind of file of photons.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PhotonFormat {
+    Png,
+    Ply,
+    Photons,
+}
+
+impl PhotonFormat {
+    /// The kind that the extension of a path asks for.
+    pub(crate) fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "png" => Some(Self::Png),
+            "ply" => Some(Self::Ply),
+            "photons" => Some(Self::Photons),
+            _ => None,
+        }
+    }
+}
+
 /// A length of time: `90`, `30s`, `2m`, `1.5h`, `500ms`.
 pub(crate) fn duration(text: &str) -> Result<Duration, String> {
     let unit_at = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());

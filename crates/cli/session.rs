@@ -81,6 +81,7 @@ pub(crate) fn render_request(scene: &SceneArgs, render: &RenderArgs, outputs: Ve
         crop: render.crop,
         tile_size: render.tile_size,
         outputs,
+        photons: render.photons.clone(),
         resume: render.resume,
         strict: render.strict,
         ..scene_request(scene)

@@ -5,6 +5,7 @@
 
 use film::{ExrImage, RgbImage};
 use std::f64::consts::FRAC_PI_2;
+use std::fmt;
 
 /// Independent runs of the other renderer behind a reference with variance.
 pub(crate) const RUNS: f64 = 64.0;
@@ -63,6 +64,21 @@ pub(crate) struct Verdict {
     pub(crate) tested: usize,
     /// Values that differ significantly.
     pub(crate) failed: usize,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self {
+            side,
+            rms,
+            tested,
+            failed,
+        } = self;
+        write!(
+            f,
+            "blocks of {side}: {failed} of {tested} differ, root mean square {rms:.3}"
+        )
+    }
 }
 
 impl Verdict {

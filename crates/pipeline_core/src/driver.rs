@@ -26,6 +26,8 @@ pub struct RenderClock {
     pub is_converged: bool,
     /// Load and prepare only.
     pub check_only: bool,
+    /// Make the photons of the first pass, and render nothing.
+    pub photons_only: bool,
     /// Refuse a scene that loading or preparing warns about.
     pub strict: bool,
 }
@@ -68,6 +70,13 @@ pub fn render(app: &mut App) -> Outcome {
     }
     let cancellation = world.resource::<Cancellation>().clone();
     run_photon_passes(world, &cancellation);
+    if world.resource::<RenderClock>().photons_only {
+        return if cancellation.is_requested() {
+            Outcome::Interrupted
+        } else {
+            Outcome::Finished
+        };
+    }
     let clock = world.resource::<RenderClock>();
     let (total, per_pass, limit) = (clock.waves_total, clock.waves_per_pass.max(1), clock.time_limit);
     let first_stop = clock.waves_done + per_pass;

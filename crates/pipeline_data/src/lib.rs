@@ -8,6 +8,7 @@
 
 mod mesh_store;
 mod photon;
+mod photon_file;
 mod request;
 mod scene;
 mod settings;
@@ -19,6 +20,7 @@ pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
 pub use photon::{
     BuiltPhotonMaps, CausticPhoton, DirectPhoton, IndirectPhoton, Photon, PhotonDemand, PhotonMarker, ProgressivePasses,
 };
+pub use photon_file::{PhotonFileError, PhotonsOfKind, read_photons, write_photons};
 pub use request::RenderRequest;
 pub use scene::{
     Acceleration, CameraFrame, ComposedScene, EnvironmentMaps, InstancePrims, PrimIndex, SceneOrigin, ShutterInterval,

@@ -1,6 +1,7 @@
 use bevy_ecs::resource::Resource;
 use glam::UVec2;
 use std::path::PathBuf;
+use transport::MapKinds;
 
 /// What the caller asks of this render, beside what the scene says. Written by the command line, read by stages.
 #[derive(Resource, Clone, Debug)]
@@ -24,6 +25,10 @@ pub struct RenderRequest {
     pub tile_size: u32,
     /// Files to write, each `.exr` or `.png`.
     pub outputs: Vec<PathBuf>,
+    /// A file of photons to take up instead of tracing them.
+    pub photons: Option<PathBuf>,
+    /// Photon maps to make beside those that the scene's methods read.
+    pub photon_maps: MapKinds,
     /// Go on from the checkpoint that an interrupted render left beside its first output.
     pub resume: bool,
     /// Treat warnings as errors.
@@ -44,6 +49,8 @@ impl Default for RenderRequest {
             crop: None,
             tile_size: 32,
             outputs: Vec::new(),
+            photons: None,
+            photon_maps: MapKinds::default(),
             resume: false,
             strict: false,
             colour: false,

@@ -41,6 +41,19 @@ impl Camera {
         }
     }
 
+    /// The place on the film, in pixels from the top left corner, where a point is seen; `None` behind the camera.
+    ///
+    /// - `time`: in [0, 1] of the shutter.
+    #[must_use]
+    pub fn film_position(&self, point: Vec3, time: f32) -> Option<Vec2> {
+        let local = self.frame.at(time).inverse().transform_point3(point);
+        let scale = 2.0 * self.tan_half_fov / self.resolution.y;
+        (local.z < 0.0).then(|| {
+            let plane = Vec2::new(local.x, -local.y) / -local.z;
+            plane / scale + 0.5 * self.resolution
+        })
+    }
+
     /// Where a place on the film is seen, in camera space, on the plane at distance 1.
     fn on_plane(&self, film: Vec2) -> Vec3 {
         let scale = 2.0 * self.tan_half_fov / self.resolution.y;
@@ -69,5 +82,10 @@ mod tests {
         assert!((top.y - std::f32::consts::FRAC_1_SQRT_2).abs() < 1e-6 && top.z < 0.0);
         let right = camera.ray(Vec2::new(200.0, 50.0), 0.0).direction;
         assert!((right.x / -right.z - 2.0).abs() < 1e-5);
+        for place in [Vec2::new(3.0, 96.5), Vec2::new(150.25, 12.0)] {
+            let seen = camera.film_position(camera.ray(place, 0.0).at(7.0), 0.0);
+            assert!(seen.is_some_and(|seen| seen.distance(place) < 1e-3), "{seen:?}");
+        }
+        assert_eq!(camera.film_position(Vec3::Z, 0.0), None);
     }
 }

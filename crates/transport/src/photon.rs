@@ -80,6 +80,16 @@ impl MapKinds {
         self
     }
 
+    /// All that either has.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self {
+            direct: self.direct || other.direct,
+            caustic: self.caustic || other.caustic,
+            indirect: self.indirect || other.indirect,
+        }
+    }
+
     /// True when no photon is wanted.
     #[must_use]
     pub const fn is_empty(self) -> bool {

@@ -18,7 +18,10 @@ pub(super) fn begin_photons(
         let maps = plan.emissions.iter().flat_map(|emission| &emission.maps);
         progress.start("photons", "photons", maps.map(|map| map.wanted).sum());
     }
-    commands.insert_resource(PhotonRun::new(&plan, pass, built.is_none()));
+    commands.insert_resource(match &plan.reloaded {
+        Some(maps) => PhotonRun::reloaded(&plan, maps),
+        None => PhotonRun::new(&plan, pass, built.is_none()),
+    });
 }
 
 /// Emits the next batch of photons.

@@ -14,6 +14,8 @@
 //! photons are stored. All of the photons of the batches are kept, so that no photon is favoured. A photon's numbers depend
 //! on its pass and path number alone and photons are stored in (path, bounce) order: the map is the same whatever the threads.
 //!
+//! Photons that an earlier run wrote to a file are stored instead of traced where the request names it, to the same bits.
+//!
 //! Progressive maps are made anew for every pass, from a number of paths that a first batch decides, and read with a radius
 //! that shrinks with the number of the pass: passes can be resumed and shared out.
 //!
@@ -44,6 +46,7 @@ use run::{PhotonPlan, PhotonRun};
 
 pub use build::photon_map;
 pub use gather::PhotonContribution;
+pub use plan::photon_key;
 pub use settings::{CausticPhotonMap, DirectPhotonMap, IndirectPhotonMap, PhotonFilter, PhotonMapSettings};
 pub use store::{PhotonPool, store_in_pool};
 

@@ -6,11 +6,15 @@ use glam::Vec2;
 use pipeline_core::RenderClock;
 use pipeline_data::vocabulary::{Findings, SceneReport, component_place, field_place};
 use pipeline_data::{
-    BuiltPhotonMaps, CameraFrame, PhotonDemand, PrimIndex, ProgressivePasses, RenderSettings, TransportScene,
+    BuiltPhotonMaps, CameraFrame, PhotonDemand, PhotonFileError, PhotonsOfKind, PrimIndex, ProgressivePasses,
+    RenderSettings, TransportScene, read_photons,
 };
 use radiometry::StageKey;
 use scene_format::{Diagnostic, Scene};
 use spatial::Ray;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
 use transport::{DensitySettings, MapKind, MapKinds, PHOTON_STAGE, landing_share, visible_targets};
 
 /// Bytes a photon takes at the peak, while the map is built; afterwards about 150.
@@ -73,7 +77,7 @@ pub(super) fn plan_photons(
         return;
     };
     let mut findings = Findings::default();
-    let wanted = wanted_maps(&settings, demand);
+    let wanted = wanted_maps(&settings, demand.union(report.request().photon_maps));
     let maps = chosen_maps(&prims, wanted, &settings, &scene.0, report.scene(), &mut findings);
     refuse_too_many(&maps, &settings, report.scene(), &mut findings);
     let is_progressive = maps.iter().any(|(_, is_progressive)| *is_progressive);
@@ -86,7 +90,10 @@ pub(super) fn plan_photons(
         findings.push_at(place, finding);
     }
     if !findings.has_error() && !maps.is_empty() && !scene.0.lights.is_empty() {
-        let plan = plan(maps, &settings, &scene.0, &camera);
+        let mut plan = plan(maps, &settings, &scene.0, &camera);
+        if let Some(file) = report.request().photons.clone() {
+            plan.reloaded = reload(&file, &plan, &photon_key(report.scene(), &settings), &mut findings);
+        }
         commands.insert_resource(plan);
         clock.photons_pending = 1;
         if is_progressive {
@@ -208,6 +215,7 @@ fn plan(
         seed: settings.seed,
         // The eye has an event of its own where the photon is read.
         max_depth: settings.methods.max_depth.saturating_sub(1),
+        reloaded: None,
     };
     for is_caustic in [true, false] {
         let mut aim = None;
@@ -276,4 +284,54 @@ fn size_passes(emission: &mut EmissionPlan, plan: &PhotonPlan, scene: &transport
         let count = landed.iter().filter(|(kind, _)| *kind == map.kind).count();
         map.batches = Some(map.batches_for(count));
     }
+}
+
+/// What photons have to agree with to be taken up again: the program, the composed scene at its frame, the seed, and the film,
+/// since photons are aimed at what it sees. The number of samples may differ.
+#[must_use]
+pub fn photon_key(scene: &Scene, settings: &RenderSettings) -> [u8; 32] {
+    let mut key = scene.hash;
+    scene_format::mix_hash(&mut key, "photons", env!("CARGO_PKG_VERSION").as_bytes());
+    scene_format::mix_hash(&mut key, "seed", &settings.seed.to_le_bytes());
+    for (label, value) in [
+        ("resolution", settings.resolution),
+        ("crop min", settings.crop_min),
+        ("crop max", settings.crop_max),
+    ] {
+        scene_format::mix_hash(&mut key, label, &value.x.to_le_bytes());
+        scene_format::mix_hash(&mut key, label, &value.y.to_le_bytes());
+    }
+    key
+}
+
+/// Reads the photons of a file, in place of tracing them. It must hold every map of the plan, none of them progressive.
+fn reload(path: &Path, plan: &PhotonPlan, key: &[u8; 32], findings: &mut Findings) -> Option<Vec<PhotonsOfKind>> {
+    let refuse = |reason: String, note: &str| {
+        let message = format!("photons cannot be taken from {}: {reason}", path.display());
+        Diagnostic::error("bad-photons", message).note(note)
+    };
+    if plan.emissions.iter().any(|emission| emission.is_progressive) {
+        let note = "leave out `--photons`, or set `progressive: false`";
+        findings.push(refuse("progressive maps are new in every pass".into(), note));
+        return None;
+    }
+    let read = File::open(path)
+        .map_err(PhotonFileError::from)
+        .and_then(|file| read_photons(&mut BufReader::new(file), key));
+    let maps = match read {
+        Ok(maps) => maps,
+        Err(error) => {
+            findings.push(refuse(error.to_string(), "or leave out `--photons`"));
+            return None;
+        }
+    };
+    let planned = plan.emissions.iter().flat_map(|emission| &emission.maps);
+    for map in planned {
+        if !maps.iter().any(|(kind, _)| *kind == map.kind) {
+            let reason = format!("it has no {} map, which this render reads", map.kind.name());
+            findings.push(refuse(reason, "write it anew with `pipeline photons` and every map"));
+            return None;
+        }
+    }
+    Some(maps)
 }

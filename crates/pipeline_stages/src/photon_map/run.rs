@@ -1,7 +1,7 @@
 //! The photons in the making: what is planned for the render, and what is under way in a pass.
 
 use bevy_ecs::resource::Resource;
-use pipeline_data::Photon;
+use pipeline_data::{Photon, PhotonsOfKind};
 use radiometry::{SampleStream, StageKey};
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -30,6 +30,8 @@ pub(super) struct PhotonPlan {
     pub(super) seed: u64,
     /// Most events between the light and where a photon is stored.
     pub(super) max_depth: u32,
+    /// Photons that were read from a file, to be stored instead of tracing any.
+    pub(super) reloaded: Option<Vec<PhotonsOfKind>>,
 }
 
 /// Photons that are emitted together, from the same random numbers, and the maps that they fill.
@@ -171,6 +173,22 @@ impl PhotonRun {
         Self {
             emissions: needed.map(emission).collect(),
             landed: Vec::new(),
+        }
+    }
+
+    /// The run of photons that were traced before, their flux already divided by the number emitted.
+    pub(super) fn reloaded(plan: &PhotonPlan, maps: &[PhotonsOfKind]) -> Self {
+        let planned = plan.emissions.iter().flat_map(|emission| &emission.maps);
+        let landed = planned.filter_map(|map| {
+            let (_, photons) = maps.iter().find(|(kind, _)| *kind == map.kind)?;
+            let mut run = MapRun::new(*map, 0);
+            run.photons.clone_from(photons);
+            run.emitted = Some(1);
+            Some(run)
+        });
+        Self {
+            emissions: VecDeque::new(),
+            landed: landed.collect(),
         }
     }
 
