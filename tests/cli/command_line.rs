@@ -19,6 +19,7 @@ fn help_goes_to_standard_output() {
       schema   List what a scene can say: components, fields, types, units, ranges, defaults
       stages   List schedules, sets and systems in the order they run
       profile  Render a scene and print what every system cost
+      photons  Draw the photons of a scene as points, or write them to a file
       compare  Measure how far an image is from a reference
       help     Print this message or the help of the given subcommand(s)
 

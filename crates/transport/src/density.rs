@@ -1,7 +1,7 @@
 use crate::vertex::Vertex;
 use glam::Vec3;
 use radiometry::{Rgb, math, unpack_direction};
-use spatial::{NearestScratch, PhotonTree};
+use spatial::{Nearest, NearestScratch, PhotonTree};
 use std::f32::consts::PI;
 
 /// How photons are weighted over the disc that they are gathered in.
@@ -136,7 +136,24 @@ struct Site {
     both_sides: bool,
 }
 
+impl Site {
+    fn of(vertex: &Vertex<'_>) -> Self {
+        Self {
+            position: vertex.point.p,
+            normal: vertex.facing_normal(),
+            error: vertex.point.error,
+            both_sides: vertex.bsdf.transmits(),
+        }
+    }
+}
+
 impl PhotonMap {
+    /// Calls `f` with the slot of each photon that an estimate at a vertex would use.
+    pub(crate) fn for_nearest(&self, vertex: &Vertex<'_>, scratch: &mut DensityScratch, mut f: impl FnMut(usize)) {
+        let (found, _) = self.find(&Site::of(vertex), scratch);
+        found.inside().for_each(|photon| f(photon.slot as usize));
+    }
+
     /// Estimates the radiance that a vertex reflects of the photons around it.
     ///
     /// `L_o(x, ω_o) ≈ Σ_p w_p f_d(x, ω_p, ω_o) Φ_p / (π r²)`
@@ -150,12 +167,7 @@ impl PhotonMap {
     /// Bias: blurs over r. Cost: O(k log N), no allocation once `scratch` has grown.
     #[must_use]
     pub fn estimate_radiance(&self, vertex: &Vertex<'_>, scratch: &mut DensityScratch) -> Estimate {
-        let site = Site {
-            position: vertex.point.p,
-            normal: vertex.facing_normal(),
-            error: vertex.point.error,
-            both_sides: vertex.bsdf.transmits(),
-        };
+        let site = Site::of(vertex);
         match vertex.lambertian() {
             // The same from every direction; the normals have made sure of the side.
             Some(value) => {
@@ -195,11 +207,33 @@ impl PhotonMap {
     /// Adds up `factor(slot) · w · Φ` over the photons of a site, divided by the area of their disc.
     #[inline]
     fn estimate(&self, site: &Site, scratch: &mut DensityScratch, factor: impl Fn(usize) -> Rgb) -> Estimate {
+        let DensitySettings { filter, shrink, .. } = self.density;
+        let (found, radius_sq) = self.find(site, scratch);
+        if radius_sq <= 0.0 {
+            return Estimate::default();
+        }
+        let mut sum = Rgb::BLACK;
+        for photon in found.inside() {
+            if shrink < 1.0 && photon.dist_sq > radius_sq {
+                continue;
+            }
+            let slot = photon.slot as usize;
+            sum += self.columns.flux[slot] * factor(slot) * filter.weight(photon.dist_sq, radius_sq);
+        }
+        Estimate {
+            value: sum * (1.0 / (PI * radius_sq)),
+            radius: radius_sq.sqrt(),
+        }
+    }
+
+    /// Finds the photons of a site, and the squared radius of its disc.
+    #[inline]
+    fn find<'a>(&self, site: &Site, scratch: &'a mut DensityScratch) -> (Nearest<'a>, f32) {
         let DensitySettings {
             nearest: k,
             max_radius,
-            filter,
             shrink,
+            ..
         } = self.density;
         let error_sq = site.error * site.error;
         let accept = |slot: u32, offset: Vec3, dist_sq: f32| {
@@ -221,21 +255,7 @@ impl PhotonMap {
         }
         *last = found.kth().map(|kth| (site.position, kth.dist_sq.sqrt()));
         let radius_sq = found.kth().map_or(max_radius * max_radius, |kth| kth.dist_sq) * (shrink * shrink);
-        if radius_sq <= 0.0 {
-            return Estimate::default();
-        }
-        let mut sum = Rgb::BLACK;
-        for photon in found.inside() {
-            if shrink < 1.0 && photon.dist_sq > radius_sq {
-                continue;
-            }
-            let slot = photon.slot as usize;
-            sum += self.columns.flux[slot] * factor(slot) * filter.weight(photon.dist_sq, radius_sq);
-        }
-        Estimate {
-            value: sum * (1.0 / (PI * radius_sq)),
-            radius: radius_sq.sqrt(),
-        }
+        (found, radius_sq)
     }
 
     /// Bytes that the map holds.

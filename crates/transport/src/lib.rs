@@ -29,6 +29,7 @@ mod density;
 mod emission;
 mod frame;
 mod gather;
+mod guide;
 mod light;
 mod medium;
 mod path;
@@ -48,6 +49,7 @@ pub use density::{
 pub use emission::{EmissionSampler, EmittedPhoton};
 pub use frame::MovingFrame;
 pub use gather::{GatherMethods, gather_indirect};
+pub use guide::Guide;
 pub use light::{Environment, EnvironmentMap, LightSample, LightSource, LightTable, SpotCone};
 pub use medium::PathMedium;
 pub use path::{Path, arrive, emitted_light, sample_direct_light, sample_direct_light_at, scatter, scatter_at};

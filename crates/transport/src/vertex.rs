@@ -1,3 +1,4 @@
+use crate::guide::Guide;
 use crate::medium::PathMedium;
 use crate::scene::Scene;
 use glam::Vec3;
@@ -25,6 +26,8 @@ pub struct Vertex<'a> {
     wo_local: Vec3,
     /// Cosine between the two normals; 1 on flat surfaces.
     cos_normals: f32,
+    /// Where light comes from, if that is known.
+    guide: Option<&'a Guide>,
 }
 
 impl<'a> Vertex<'a> {
@@ -45,6 +48,31 @@ impl<'a> Vertex<'a> {
             wo_local: frame.local_from_world(wo),
             cos_normals: normal.dot(point.ng),
             frame,
+            guide: None,
+        }
+    }
+
+    /// The same vertex, its directions drawn with the help of a guide.
+    #[inline]
+    #[must_use]
+    pub fn guided(mut self, guide: Option<&'a Guide>) -> Self {
+        self.guide = guide.filter(|guide| guide.is_known() && self.diffuse_value().is_some());
+        self
+    }
+
+    /// A direction in the shading frame, turned so that the eye is on the side of +z.
+    #[inline]
+    pub(crate) fn to_local(&self, direction: Vec3) -> Vec3 {
+        self.toward_eye(self.frame.local_from_world(direction))
+    }
+
+    /// Turns a local direction from the side of the eye to +z, and back.
+    #[inline]
+    fn toward_eye(&self, local: Vec3) -> Vec3 {
+        if self.wo_local.z < 0.0 {
+            Vec3::new(local.x, local.y, -local.z)
+        } else {
+            local
         }
     }
 
@@ -56,7 +84,10 @@ impl<'a> Vertex<'a> {
         if (wi_local.z > 0.0) != (self.point.ng.dot(wi) > 0.0) {
             return (LobeValues::default(), 0.0);
         }
-        let (mut values, pdf) = self.bsdf.eval_and_pdf(self.wo_local, wi_local, Transport::Radiance);
+        let (mut values, mut pdf) = self.bsdf.eval_and_pdf(self.wo_local, wi_local, Transport::Radiance);
+        if let Some(guide) = self.guide {
+            pdf = guide.mixed_pdf(self.toward_eye(wi_local), pdf);
+        }
         values.diffuse *= self.terminator(wi, wi_local.z);
         (values, pdf)
     }
@@ -113,7 +144,10 @@ impl<'a> Vertex<'a> {
     #[inline]
     #[must_use]
     pub fn sample(&self, u_lobe: f32, u: glam::Vec2, transport: Transport) -> Option<BsdfSample> {
-        let mut sample = self.bsdf.sample(self.wo_local, u_lobe, u, transport)?;
+        let mut sample = match self.guide {
+            Some(guide) if transport == Transport::Radiance => self.sample_guided(guide, u_lobe, u)?,
+            _ => self.bsdf.sample(self.wo_local, u_lobe, u, transport)?,
+        };
         let cos_shading = sample.wi.z;
         sample.wi = self.frame.world_from_local(sample.wi).normalize();
         let cos_geometric = self.point.ng.dot(sample.wi);
@@ -138,6 +172,26 @@ impl<'a> Vertex<'a> {
             }
         }
         Some(sample)
+    }
+
+    /// A local direction from the guide or from the scattering function, weighed by the density of both.
+    #[inline]
+    fn sample_guided(&self, guide: &Guide, u_lobe: f32, u: glam::Vec2) -> Option<BsdfSample> {
+        let own = || self.bsdf.sample(self.wo_local, u_lobe, u, Transport::Radiance);
+        let wi = match guide.sample(u_lobe, u) {
+            Some(local) => self.toward_eye(local),
+            None => own()?.wi,
+        };
+        let (values, pdf) = self.bsdf.eval_and_pdf(self.wo_local, wi, Transport::Radiance);
+        let pdf = guide.mixed_pdf(self.toward_eye(wi), pdf);
+        (pdf > 0.0).then(|| BsdfSample {
+            wi,
+            weight: values.diffuse * (1.0 / pdf),
+            pdf,
+            class: scattering::LobeClass::Diffuse,
+            transmitted: false,
+            eta_sq_scale: 1.0,
+        })
     }
 
     /// 1 on flat surfaces; falls smoothly to 0 where the surface would shadow itself.

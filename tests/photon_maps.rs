@@ -1,0 +1,245 @@
+//! The three photon maps and final gathering in whole pictures: closed furnaces, threads, files, passes.
+
+#![expect(clippy::print_stdout, reason = "furnaces report their figures")]
+
+use film::{ExrImage, RgbImage, block_means, read_exr};
+use glam::Vec3;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+const DIRECT: &str = "/Render.LightTransport.direct=PhotonMap";
+const CAUSTIC: &str = "/Render.LightTransport.caustic=PhotonMap";
+const INDIRECT: &str = "/Render.LightTransport.indirect=PhotonMap";
+const GATHER: &str = "/Render.LightTransport.indirect=FinalGather";
+
+fn scene(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/references");
+    folder.join(name).join("scene.ron")
+}
+
+/// Runs the program with these options and fields.
+fn run(command: &str, scene: &Path, options: &[&str], fields: &[&str]) {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_pipeline"));
+    program.arg(command).arg(scene).arg("--quiet").args(options);
+    for field in fields {
+        program.arg("--set").arg(field);
+    }
+    let ran = program.output().expect("the program starts");
+    let said = String::from_utf8_lossy(&ran.stderr);
+    assert!(ran.status.success(), "{options:?} {fields:?}: {}\n{said}", ran.status);
+}
+
+/// The path of a file in a folder, as an option.
+fn file(folder: &TempDir, name: &str) -> String {
+    folder.path().join(name).to_str().expect("a path of letters").into()
+}
+
+fn render(scene: &Path, options: &[&str], fields: &[&str]) -> ExrImage {
+    let folder = tempfile::tempdir().expect("a folder for the image");
+    let output = file(&folder, "image.exr");
+    run("run", scene, &[options, &["-o", &output]].concat(), fields);
+    read_exr(Path::new(&output)).expect("a valid image")
+}
+
+fn beauty(image: &ExrImage) -> RgbImage {
+    image.rgb("").expect("R, G, B")
+}
+
+fn mean(values: impl Iterator<Item = f32>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + f64::from(value), count + 1));
+    sum / f64::from(count)
+}
+
+/// Where each pixel of the furnace is seen: from its camera, by the distance of the image.
+fn places(image: &ExrImage) -> Vec<Vec3> {
+    let (eye, target) = (Vec3::new(0.2, 0.1, 0.3), Vec3::new(-1.0, -0.4, -0.9));
+    let ahead = (target - eye).normalize();
+    let right = ahead.cross(Vec3::Y).normalize();
+    let up = right.cross(ahead);
+    let side = SIDE as f32;
+    let scale = 2.0 * 35_f32.to_radians().tan() / side;
+    let depths = image.channel("depth.Z").expect("a depth");
+    let place = |(i, depth): (usize, &f32)| {
+        let (x, y) = ((i as u32 % SIDE) as f32 + 0.5, (i as u32 / SIDE) as f32 + 0.5);
+        let direction = ahead + right * ((x - 0.5 * side) * scale) + up * ((0.5 * side - y) * scale);
+        eye + direction.normalize() * *depth
+    };
+    depths.iter().enumerate().map(place).collect()
+}
+
+/// Side of the images of furnaces, in pixels.
+const SIDE: u32 = 64;
+
+/// Furnaces and the radiance of every point of them: 1, whatever the albedo.
+const FURNACES: [&str; 2] = ["furnace", "furnace80"];
+
+/// What a mean may be off by: noise of the photons and of the rays. Edges are looked at apart.
+const MEAN: f64 = 0.01;
+/// What a block of 8×8 pixels may be off by, where rays are gathered.
+const BLOCK: f32 = 0.03;
+
+#[test]
+fn furnaces_seen_in_the_maps_shine_alike_but_for_their_edges() {
+    const RADIUS: f32 = 0.12;
+    let radius = |map: &str| format!("/Render.{map}.max_radius={RADIUS}");
+    for name in FURNACES {
+        let fields = [DIRECT, INDIRECT, &radius("DirectPhotonMap"), &radius("IndirectPhotonMap")];
+        let image = render(&scene(name), &["--resolution", "64x64", "--samples", "4"], &fields);
+        let pixels = beauty(&image).pixels;
+        // On a face of the box from −1 to 1, the two other coordinates tell how far the next edge is.
+        let from_edge = |place: &Vec3| {
+            let mut distances = place.abs().to_array().map(|coordinate| 1.0 - coordinate);
+            distances.sort_by(f32::total_cmp);
+            distances[1]
+        };
+        let inside = places(&image);
+        let clear = || inside.iter().zip(&pixels).filter(|(place, _)| from_edge(place) > RADIUS);
+        assert!(clear().count() > pixels.len() / 2, "most of a furnace is not at its edges");
+        let (far, all) = (mean(clear().map(|(_, p)| p[1])), mean(pixels.iter().map(|p| p[1])));
+        println!("{name}: {far:.4} far from edges, {all:.4} in all");
+        assert!((far - 1.0).abs() < MEAN, "{name}: {far}");
+        // A disc that hangs over an edge loses up to half of its photons.
+        assert!(all < far && all > 0.9, "{name}: {all} in all, {far} far from edges");
+    }
+}
+
+#[test]
+fn gathered_furnaces_shine_alike_everywhere() {
+    for name in FURNACES {
+        for precomputed in ["true", "false"] {
+            let fields = [
+                GATHER,
+                "/Render.FinalGather.rays=64",
+                &format!("/Render.FinalGather.precomputed={precomputed}"),
+            ];
+            let image = beauty(&render(&scene(name), &["--resolution", "64x64", "--samples", "4"], &fields));
+            let all = mean(image.pixels.iter().map(|p| p[1]));
+            let blocks = block_means(&image, 8);
+            let worst = blocks.pixels.iter().map(|p| (p[1] - 1.0).abs()).fold(0.0, f32::max);
+            println!("{name}, precomputed {precomputed}: {all:.4}, worst block off by {worst:.4}");
+            assert!((all - 1.0).abs() < MEAN && worst < BLOCK, "{name}: {all}, {worst}");
+        }
+    }
+}
+
+/// A picture with all three maps, gathered and seen, mirrors and glass.
+const SMALL: [&str; 5] = [
+    "/Render.DirectPhotonMap.photons=3000",
+    "/Render.CausticPhotonMap.photons=3000",
+    "/Render.IndirectPhotonMap.photons=3000",
+    DIRECT,
+    CAUSTIC,
+];
+const SMALL_OPTIONS: [&str; 4] = ["--resolution", "40x40", "--samples", "4"];
+
+fn bytes(path: &str) -> Vec<u8> {
+    std::fs::read(path).expect("a file that was written")
+}
+
+#[test]
+fn threads_and_reloaded_photons_change_no_bit() {
+    let glass = scene("cornell_glass");
+    let progressive = [
+        INDIRECT,
+        "/Render.DirectPhotonMap.progressive=true",
+        "/Render.CausticPhotonMap.progressive=true",
+        "/Render.IndirectPhotonMap.progressive=true",
+    ];
+    for (label, more) in [
+        ("seen", &[INDIRECT] as &[&str]),
+        ("gathered", &[GATHER, "/Render.FinalGather.rays=8"]),
+        ("progressive", &progressive),
+    ] {
+        let folder = tempfile::tempdir().expect("a folder for images");
+        let fields = [&SMALL, more].concat();
+        let picture = |name: &str, options: &[&str]| {
+            let output = file(&folder, name);
+            run("run", &glass, &[&SMALL_OPTIONS, options, &["-o", &output]].concat(), &fields);
+            bytes(&output)
+        };
+        let first = picture("first.exr", &["--threads", "1"]);
+        for threads in ["2", "3"] {
+            let other = picture("other.exr", &["--threads", threads, "--tile-size", "7"]);
+            assert!(other == first, "{label} on {threads} threads");
+        }
+        if label == "progressive" {
+            continue;
+        }
+        let photons = file(&folder, "maps.photons");
+        run("photons", &glass, &["--resolution", "40x40", "-o", &photons], &fields);
+        let reloaded = picture("reloaded.exr", &["--photons", &photons]);
+        assert!(reloaded == first, "{label} with photons from a file");
+    }
+}
+
+#[test]
+fn photons_of_another_scene_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder for photons");
+    let photons = file(&folder, "maps.photons");
+    run(
+        "photons",
+        &scene("cornell_glass"),
+        &["--resolution", "40x40", "-o", &photons],
+        &SMALL,
+    );
+    let refused = |bytes: &[u8], expected: &str| {
+        std::fs::write(&photons, bytes).expect("a writable folder");
+        let ran = Command::new(env!("CARGO_BIN_EXE_pipeline"))
+            .arg("run")
+            .arg(scene("cornell_glass"))
+            .args(["--quiet", "--photons", &photons, "-o", &file(&folder, "image.exr")])
+            .args(SMALL_OPTIONS)
+            .args(SMALL.iter().flat_map(|field| ["--set", field]))
+            .args(["--seed", if expected.contains("seed") { "8" } else { "0" }])
+            .output()
+            .expect("the program starts");
+        let said = String::from_utf8_lossy(&ran.stderr);
+        assert_eq!(ran.status.code(), Some(2), "{said}");
+        assert!(said.contains("bad-photons") && said.contains(expected), "{said}");
+        assert!(!folder.path().join("image.exr").exists());
+    };
+    let good = bytes(&photons);
+    refused(&good, "another scene, seed");
+    refused(&good[..good.len() / 2], "cut off");
+    refused(b"ply\nformat", "no photon file");
+    let mut damaged = good;
+    let end = damaged.len() - 20;
+    damaged[end] ^= 1;
+    refused(&damaged, "damaged");
+}
+
+#[test]
+fn photons_are_drawn_and_written_down() {
+    let folder = tempfile::tempdir().expect("a folder for photons");
+    let (picture, cloud) = (file(&folder, "photons.png"), file(&folder, "photons.ply"));
+    for colour in ["flux", "map", "bounce"] {
+        let options = ["--resolution", "40x40", "--colour", colour, "-o", &picture, "-o", &cloud];
+        run("photons", &scene("cornell_glass"), &options, &SMALL);
+        let drawn = bytes(&picture);
+        assert!(drawn.starts_with(b"\x89PNG"), "{colour}");
+        let written = bytes(&cloud);
+        let end = written.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
+        let header = std::str::from_utf8(&written[..end]).expect("text");
+        let count = header.lines().find_map(|line| line.strip_prefix("element vertex "));
+        let count: usize = count.expect("a count").parse().expect("a number");
+        assert!(count >= 9000, "{header}");
+        // Three doubles, nine floats, four bytes, two counts.
+        assert_eq!(written.len() - end, count * (3 * 8 + 9 * 4 + 4 + 2 * 4), "{header}");
+    }
+}
+
+/// Every figure of the lecture is a scene, and none is black.
+#[test]
+fn the_figures_of_the_lecture_render() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lecture");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).expect("the lecture's scenes") {
+        let path = entry.expect("a readable folder").path();
+        let image = render(&path, &["--resolution", "16x16", "--samples", "1"], &[]);
+        let light = mean(beauty(&image).pixels.into_iter().flatten());
+        assert!(light > 0.001, "{}: {light}", path.display());
+        count += 1;
+    }
+    assert_eq!(count, 9, "one scene that is traced, and the eight figures of photons");
+}
