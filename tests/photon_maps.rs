@@ -84,7 +84,12 @@ fn furnaces_seen_in_the_maps_shine_alike_but_for_their_edges() {
     const RADIUS: f32 = 0.12;
     let radius = |map: &str| format!("/Render.{map}.max_radius={RADIUS}");
     for name in FURNACES {
-        let fields = [DIRECT, INDIRECT, &radius("DirectPhotonMap"), &radius("IndirectPhotonMap")];
+        let fields = [
+            DIRECT,
+            INDIRECT,
+            &radius("DirectPhotonMap"),
+            &radius("IndirectPhotonMap"),
+        ];
         let image = render(&scene(name), &["--resolution", "64x64", "--samples", "4"], &fields);
         let pixels = beauty(&image).pixels;
         // On a face of the box from −1 to 1, the two other coordinates tell how far the next edge is.
@@ -94,8 +99,16 @@ fn furnaces_seen_in_the_maps_shine_alike_but_for_their_edges() {
             distances[1]
         };
         let inside = places(&image);
-        let clear = || inside.iter().zip(&pixels).filter(|(place, _)| from_edge(place) > RADIUS);
-        assert!(clear().count() > pixels.len() / 2, "most of a furnace is not at its edges");
+        let clear = || {
+            inside
+                .iter()
+                .zip(&pixels)
+                .filter(|(place, _)| from_edge(place) > RADIUS)
+        };
+        assert!(
+            clear().count() > pixels.len() / 2,
+            "most of a furnace is not at its edges"
+        );
         let (far, all) = (mean(clear().map(|(_, p)| p[1])), mean(pixels.iter().map(|p| p[1])));
         println!("{name}: {far:.4} far from edges, {all:.4} in all");
         assert!((far - 1.0).abs() < MEAN, "{name}: {far}");
@@ -113,7 +126,11 @@ fn gathered_furnaces_shine_alike_everywhere() {
                 "/Render.FinalGather.rays=64",
                 &format!("/Render.FinalGather.precomputed={precomputed}"),
             ];
-            let image = beauty(&render(&scene(name), &["--resolution", "64x64", "--samples", "4"], &fields));
+            let image = beauty(&render(
+                &scene(name),
+                &["--resolution", "64x64", "--samples", "4"],
+                &fields,
+            ));
             let all = mean(image.pixels.iter().map(|p| p[1]));
             let blocks = block_means(&image, 8);
             let worst = blocks.pixels.iter().map(|p| (p[1] - 1.0).abs()).fold(0.0, f32::max);
@@ -155,7 +172,12 @@ fn threads_and_reloaded_photons_change_no_bit() {
         let fields = [&SMALL, more].concat();
         let picture = |name: &str, options: &[&str]| {
             let output = file(&folder, name);
-            run("run", &glass, &[&SMALL_OPTIONS, options, &["-o", &output]].concat(), &fields);
+            run(
+                "run",
+                &glass,
+                &[&SMALL_OPTIONS, options, &["-o", &output]].concat(),
+                &fields,
+            );
             bytes(&output)
         };
         let first = picture("first.exr", &["--threads", "1"]);
@@ -214,12 +236,25 @@ fn photons_are_drawn_and_written_down() {
     let folder = tempfile::tempdir().expect("a folder for photons");
     let (picture, cloud) = (file(&folder, "photons.png"), file(&folder, "photons.ply"));
     for colour in ["flux", "map", "bounce"] {
-        let options = ["--resolution", "40x40", "--colour", colour, "-o", &picture, "-o", &cloud];
+        let options = [
+            "--resolution",
+            "40x40",
+            "--colour",
+            colour,
+            "-o",
+            &picture,
+            "-o",
+            &cloud,
+        ];
         run("photons", &scene("cornell_glass"), &options, &SMALL);
         let drawn = bytes(&picture);
         assert!(drawn.starts_with(b"\x89PNG"), "{colour}");
         let written = bytes(&cloud);
-        let end = written.windows(11).position(|w| w == b"end_header\n").expect("a header") + 11;
+        let end = written
+            .windows(11)
+            .position(|w| w == b"end_header\n")
+            .expect("a header")
+            + 11;
         let header = std::str::from_utf8(&written[..end]).expect("text");
         let count = header.lines().find_map(|line| line.strip_prefix("element vertex "));
         let count: usize = count.expect("a count").parse().expect("a number");

@@ -1,4 +1,4 @@
-//! Photons as a point cloud that MeshLab and Blender open: PLY, binary, little-endian.
+//! Photons as a point cloud for other programs: PLY, binary, little-endian, as `MeshLab` and Blender open it.
 
 use crate::args::PhotonColour;
 use crate::photon_colour::Colours;

@@ -30,7 +30,7 @@ fn help_goes_to_standard_output() {
     Exit codes: 0 done, 1 render or I/O failed, 2 bad command line or bad scene, 130 interrupted (image written).
     ");
     for command in [
-        "run", "check", "flatten", "explain", "schema", "stages", "profile", "compare",
+        "run", "check", "flatten", "explain", "schema", "stages", "profile", "photons", "compare",
     ] {
         let ran = Folder::new().succeed(&format!("{command} --help"));
         assert!(

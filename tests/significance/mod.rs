@@ -152,7 +152,7 @@ fn statistic(
 /// P(|T| ≥ t) = ∫ cos^(ν−1) φ dφ over [φ_t, π/2], divided by that over [0, π/2], with t = √ν tan φ_t.
 fn p_value(t: f64, freedom: f64) -> f64 {
     /// A normal distribution in place of more degrees of freedom would be off by less than the integration.
-    const MOST_FREEDOM: f64 = 1e4;
+    const MOST_FREEDOM: f64 = 1e5;
     /// Values nearer to 0 pass whatever their freedom, so the exact chance does not matter; it saves the time.
     const CLEARLY_EQUAL: f64 = 2.5;
     if t.abs() < CLEARLY_EQUAL {

@@ -28,7 +28,7 @@ pub use scene::{
 };
 pub use settings::RenderSettings;
 pub use stream::{
-    Contribution, ContributionLog, Contributions, FilmBatch, FilmSums, FirstHit, FirstHits, HitStream, PathStream,
-    RayStream,
+    Contribution, ContributionLog, Contributions, FilmBatch, FilmSums, FirstHit, FirstHits, GuideStream, HitStream,
+    PathStream, RayStream,
 };
 pub use texture_store::{PictureKey, TextureRole, TextureStore};

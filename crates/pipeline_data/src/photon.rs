@@ -71,7 +71,12 @@ impl PhotonMarker for IndirectPhoton {
 /// Which photon maps stages read, beside what `LightTransport` says. Written by each of them in `PrepareStages`, read by
 /// `photon_map`, which comes after them.
 #[derive(Resource, Clone, Copy, Debug, Default)]
-pub struct PhotonDemand(pub MapKinds);
+pub struct PhotonDemand {
+    /// Kinds of photons.
+    pub kinds: MapKinds,
+    /// Photons to store for a map that nothing else reads, where its own settings do not say.
+    pub photons: Option<u32>,
+}
 
 /// The photon maps, ready to be read. Written by `photon_map`; present once they are built.
 #[derive(Resource, Clone, Debug, Default)]

@@ -7,15 +7,15 @@ use film::{AuxGroup, ChannelLayout};
 use glam::{Vec2, Vec3};
 use radiometry::{Rgb, SampleStream, StageKey};
 use spatial::{Ray, SurfacePoint};
-use transport::{Layer, Path};
+use transport::{Guide, Layer, Path};
 
 /// A batch of camera paths: a run of film pixels, in storage order. Written by `camera` for each wave; a few dozen.
 ///
 /// All streams of a batch are components of the same entity. Streams that hold live paths ([`RayStream`],
-/// [`PathStream`], [`HitStream`]) run in parallel, row by row; streams by slot ([`FirstHits`], contributions) have one
+/// [`PathStream`], [`HitStream`], [`GuideStream`]) run in parallel, row by row; streams by slot ([`FirstHits`], contributions) have one
 /// row for each path that the wave began with.
 #[derive(Component, Clone, Debug, Default)]
-#[require(RayStream, HitStream, PathStream, FirstHits)]
+#[require(RayStream, HitStream, GuideStream, PathStream, FirstHits)]
 pub struct FilmBatch {
     /// First pixel, in the film's storage order.
     pub first_pixel: usize,
@@ -57,6 +57,11 @@ pub struct PathStream(pub Vec<Path>);
 /// What each live path's ray met; `None` where it left the scene. Written by `path_tracing`.
 #[derive(Component, Clone, Debug, Default)]
 pub struct HitStream(pub Vec<Option<SurfacePoint>>);
+
+/// Where light comes from at each hit, for paths to be drawn there; empty where nothing guides them. Written by
+/// `path_guiding`; 136 bytes a path.
+#[derive(Component, Clone, Debug, Default)]
+pub struct GuideStream(pub Vec<Guide>);
 
 /// What the camera ray of each slot met first, for the auxiliary channels. Written by `image`.
 #[derive(Component, Clone, Debug, Default)]

@@ -14,6 +14,7 @@
 //! | [`depth_of_field`] | camera rays through a lens |
 //! | [`photon_map`] | photons: emitted, stored as entities in three maps, gathered |
 //! | [`final_gather`] | indirect light by rays that read the photon maps |
+//! | [`path_guiding`] | directions of paths, drawn to where photons come from |
 //! | [`path_tracing`] | intersection, emission, direct light, scattering |
 //! | [`image`] | film, auxiliary channels, image files and checkpoints |
 //!
@@ -36,6 +37,7 @@ pub mod geometry;
 pub mod image;
 pub mod load;
 pub mod motion_blur;
+pub mod path_guiding;
 pub mod path_tracing;
 pub mod photon_map;
 pub mod tables;
@@ -54,6 +56,7 @@ impl Plugin for DefaultStages {
             depth_of_field::DepthOfFieldPlugin,
             photon_map::PhotonMapPlugin,
             final_gather::FinalGatherPlugin,
+            path_guiding::PathGuidingPlugin,
             path_tracing::PathTracingPlugin,
             image::ImagePlugin,
         ));
@@ -64,6 +67,7 @@ impl Plugin for DefaultStages {
             Prepare,
             (
                 image::ImageSystems,
+                path_guiding::PathGuidingSystems,
                 final_gather::FinalGatherSystems,
                 photon_map::PhotonMapSystems,
                 camera::CameraSystems,

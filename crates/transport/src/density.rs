@@ -150,8 +150,9 @@ impl Site {
 impl PhotonMap {
     /// Calls `f` with the slot of each photon that an estimate at a vertex would use.
     pub(crate) fn for_nearest(&self, vertex: &Vertex<'_>, scratch: &mut DensityScratch, mut f: impl FnMut(usize)) {
-        let (found, _) = self.find(&Site::of(vertex), scratch);
-        found.inside().for_each(|photon| f(photon.slot as usize));
+        self.find(&Site::of(vertex), scratch, |found, _| {
+            found.inside().for_each(|photon| f(photon.slot as usize));
+        });
     }
 
     /// Estimates the radiance that a vertex reflects of the photons around it.
@@ -208,27 +209,28 @@ impl PhotonMap {
     #[inline]
     fn estimate(&self, site: &Site, scratch: &mut DensityScratch, factor: impl Fn(usize) -> Rgb) -> Estimate {
         let DensitySettings { filter, shrink, .. } = self.density;
-        let (found, radius_sq) = self.find(site, scratch);
-        if radius_sq <= 0.0 {
-            return Estimate::default();
-        }
-        let mut sum = Rgb::BLACK;
-        for photon in found.inside() {
-            if shrink < 1.0 && photon.dist_sq > radius_sq {
-                continue;
+        self.find(site, scratch, |found, radius_sq| {
+            if radius_sq <= 0.0 {
+                return Estimate::default();
             }
-            let slot = photon.slot as usize;
-            sum += self.columns.flux[slot] * factor(slot) * filter.weight(photon.dist_sq, radius_sq);
-        }
-        Estimate {
-            value: sum * (1.0 / (PI * radius_sq)),
-            radius: radius_sq.sqrt(),
-        }
+            let mut sum = Rgb::BLACK;
+            for photon in found.inside() {
+                if shrink < 1.0 && photon.dist_sq > radius_sq {
+                    continue;
+                }
+                let slot = photon.slot as usize;
+                sum += self.columns.flux[slot] * factor(slot) * filter.weight(photon.dist_sq, radius_sq);
+            }
+            Estimate {
+                value: sum * (1.0 / (PI * radius_sq)),
+                radius: radius_sq.sqrt(),
+            }
+        })
     }
 
-    /// Finds the photons of a site, and the squared radius of its disc.
+    /// Finds the photons of a site, and gives them to `receive` with the squared radius of its disc.
     #[inline]
-    fn find<'a>(&self, site: &Site, scratch: &'a mut DensityScratch) -> (Nearest<'a>, f32) {
+    fn find<R>(&self, site: &Site, scratch: &mut DensityScratch, receive: impl FnOnce(Nearest<'_>, f32) -> R) -> R {
         let DensitySettings {
             nearest: k,
             max_radius,
@@ -255,7 +257,7 @@ impl PhotonMap {
         }
         *last = found.kth().map(|kth| (site.position, kth.dist_sq.sqrt()));
         let radius_sq = found.kth().map_or(max_radius * max_radius, |kth| kth.dist_sq) * (shrink * shrink);
-        (found, radius_sq)
+        receive(found, radius_sq)
     }
 
     /// Bytes that the map holds.

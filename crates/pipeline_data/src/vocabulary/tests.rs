@@ -121,12 +121,15 @@ fn refusal(component: &str) -> String {
 fn a_method_that_does_not_exist_names_those_that_do() {
     let indirect = refusal("LightTransport: (indirect: IrradianceCache)");
     assert!(
-        indirect.contains("`LightTransport.indirect` must be one of PathTrace, Off"),
+        indirect.contains("`LightTransport.indirect` must be one of PathTrace, PhotonMap, FinalGather, Off"),
         "{indirect}"
     );
     assert!(indirect.contains("scene.ron:1:"), "{indirect}");
-    let direct = refusal("LightTransport: (direct: PhotonMap)");
-    assert!(direct.contains("must be one of SampleLights, Off"), "{direct}");
+    let direct = refusal("LightTransport: (direct: PathTrace)");
+    assert!(
+        direct.contains("must be one of SampleLights, PhotonMap, Off"),
+        "{direct}"
+    );
 }
 
 #[test]

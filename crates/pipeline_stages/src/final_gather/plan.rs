@@ -48,7 +48,9 @@ pub(super) fn plan_gathering(
     }
     let reads_photons = chosen.incoming == GatherSource::Photons;
     if reads_photons {
-        demand.0 = MapKind::ALL.into_iter().fold(demand.0, MapKinds::with);
+        demand.kinds = MapKind::ALL.into_iter().fold(demand.kinds, MapKinds::with);
+        // As many as their settings say.
+        demand.photons = None;
     }
     commands.insert_resource(GatherPlan {
         rays: chosen.rays,

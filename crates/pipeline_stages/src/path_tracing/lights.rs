@@ -1,7 +1,10 @@
 use bevy_ecs::prelude::*;
 use pipeline_core::record_items;
-use pipeline_data::{Contribution, ContributionLog, HitStream, PathStream, RayStream, RenderSettings, TransportScene};
+use pipeline_data::{
+    Contribution, ContributionLog, GuideStream, HitStream, PathStream, RayStream, RenderSettings, TransportScene,
+};
 use rayon::prelude::*;
+use transport::Vertex;
 
 /// Light that was found by sampling the lights. Written by `sample_lights`.
 #[derive(Component, Clone, Debug, Default)]
@@ -19,19 +22,33 @@ impl Contribution for DirectLightContribution {
 
 /// Samples one light at every hit.
 pub(super) fn sample_lights(
-    mut batches: Query<(&RayStream, &PathStream, &HitStream, &mut DirectLightContribution)>,
+    mut batches: Query<(
+        &RayStream,
+        &PathStream,
+        &HitStream,
+        &GuideStream,
+        &mut DirectLightContribution,
+    )>,
     scene: Res<TransportScene>,
     settings: Res<RenderSettings>,
 ) {
     let mut batches: Vec<_> = batches.iter_mut().collect();
     let paths = batches
         .par_iter_mut()
-        .map(|(rays, paths, hits, log)| {
-            for ((ray, path), hit) in rays.0.iter().zip(&paths.0).zip(&hits.0) {
+        .map(|(rays, paths, hits, guides, log)| {
+            for (row, ((ray, path), hit)) in rays.0.iter().zip(&paths.0).zip(&hits.0).enumerate() {
                 let Some(hit) = hit else { continue };
-                transport::sample_direct_light(&scene.0, &settings.methods, path, ray, hit, |layer, radiance| {
-                    log.0.add(path.slot, layer, radiance);
-                });
+                let vertex = Vertex::new(&scene.0, hit, -ray.direction, &path.medium).guided(guides.0.get(row));
+                transport::sample_direct_light_at(
+                    &scene.0,
+                    &settings.methods,
+                    path,
+                    ray.time,
+                    &vertex,
+                    |layer, radiance| {
+                        log.0.add(path.slot, layer, radiance);
+                    },
+                );
             }
             paths.0.len()
         })

@@ -67,7 +67,7 @@ pub(super) fn plan_photons(
     commands.remove_resource::<BuiltPhotonMaps>();
     commands.remove_resource::<ProgressivePasses>();
     clock.photons_pending = 0;
-    let demand = std::mem::take(&mut *demand).0;
+    let demand = std::mem::take(&mut *demand);
     let Prepared {
         settings,
         scene,
@@ -77,7 +77,10 @@ pub(super) fn plan_photons(
         return;
     };
     let mut findings = Findings::default();
-    let wanted = wanted_maps(&settings, demand.union(report.request().photon_maps));
+    let wanted = PhotonDemand {
+        kinds: wanted_maps(&settings, demand.kinds.union(report.request().photon_maps)),
+        ..demand
+    };
     let maps = chosen_maps(&prims, wanted, &settings, &scene.0, report.scene(), &mut findings);
     refuse_too_many(&maps, &settings, report.scene(), &mut findings);
     let is_progressive = maps.iter().any(|(_, is_progressive)| *is_progressive);
@@ -112,11 +115,11 @@ fn wanted_maps(settings: &RenderSettings, demand: MapKinds) -> MapKinds {
     MapKind::ALL.into_iter().filter(read).fold(demand, MapKinds::with)
 }
 
-/// The maps that are wanted and can hold anything, and whether each is progressive, with the settings of the render prim or the defaults. Warns of settings
-/// without effect.
+/// The maps that are wanted and can hold anything, and whether each is progressive, with the settings of the render prim or
+/// the defaults. Warns of settings without effect.
 fn chosen_maps(
     prims: &MapPrims<'_, '_>,
-    wanted: MapKinds,
+    wanted: PhotonDemand,
     settings: &RenderSettings,
     scene: &transport::Scene,
     composed: &Scene,
@@ -132,39 +135,44 @@ fn chosen_maps(
 
 fn chosen<S: PhotonMapSettings>(
     prims: &Query<(&PrimIndex, &S)>,
-    wanted: MapKinds,
+    wanted: PhotonDemand,
     settings: &RenderSettings,
     scene: &transport::Scene,
     composed: &Scene,
     findings: &mut Findings,
 ) -> Option<(MapPlan, bool)> {
     let mut chosen = S::default();
+    let mut photons = match wanted.photons {
+        Some(photons) if !settings.methods.reads_map(S::KIND) => photons,
+        _ => chosen.photons(),
+    };
     for (prim, written) in prims {
         let unused = if prim.0 != settings.render_prim {
             format!(
                 "`{}` stands on a prim that carries no `Render`; it has no effect there",
                 S::NAME
             )
-        } else if !wanted.wants(S::KIND) {
+        } else if !wanted.kinds.wants(S::KIND) {
             format!(
                 "`{}` has no effect: no method of `LightTransport` reads this map",
                 S::NAME
             )
         } else {
             chosen = written.clone();
+            photons = chosen.photons();
             continue;
         };
         let place = component_place(composed, prim.0, S::NAME);
         findings.push_at(place, Diagnostic::warning("unused-settings", unused));
     }
     let can_hold = scene.diffuse_area() > 0.0 && (S::KIND != MapKind::Caustic || !scene.specular_targets().is_empty());
-    if !wanted.wants(S::KIND) || !can_hold {
+    if !wanted.kinds.wants(S::KIND) || !can_hold {
         return None;
     }
-    let even_radius = DensitySettings::even_radius(chosen.nearest(), chosen.photons(), scene.diffuse_area());
+    let even_radius = DensitySettings::even_radius(chosen.nearest(), photons, scene.diffuse_area());
     let plan = MapPlan {
         kind: S::KIND,
-        wanted: u64::from(chosen.photons()),
+        wanted: u64::from(photons),
         density: DensitySettings {
             nearest: chosen.nearest() as usize,
             max_radius: chosen.max_radius().unwrap_or(even_radius),
