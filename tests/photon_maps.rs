@@ -58,7 +58,7 @@ fn places(image: &ExrImage) -> Vec<Vec3> {
     let right = ahead.cross(Vec3::Y).normalize();
     let up = right.cross(ahead);
     let side = SIDE as f32;
-    let scale = 2.0 * 35_f32.to_radians().tan() / side;
+    let scale = 2.0 * radiometry::math::tan(35_f32.to_radians()) / side;
     let depths = image.channel("depth.Z").expect("a depth");
     let place = |(i, depth): (usize, &f32)| {
         let (x, y) = ((i as u32 % SIDE) as f32 + 0.5, (i as u32 / SIDE) as f32 + 0.5);
