@@ -124,6 +124,9 @@ fn gathered_furnaces_shine_alike_everywhere() {
             let fields = [
                 GATHER,
                 "/Render.FinalGather.rays=64",
+                // Discs that hang over an edge lose photons; with these many they are small.
+                "/Render.DirectPhotonMap.photons=400000",
+                "/Render.IndirectPhotonMap.photons=400000",
                 &format!("/Render.FinalGather.precomputed={precomputed}"),
             ];
             let image = beauty(&render(

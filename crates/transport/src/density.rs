@@ -134,6 +134,8 @@ struct Site {
     error: f32,
     /// A surface that transmits is lit from behind as well.
     both_sides: bool,
+    /// A photon that made the site be chosen tells nothing of the density there.
+    is_at_a_photon: bool,
 }
 
 impl Site {
@@ -143,6 +145,7 @@ impl Site {
             normal: vertex.facing_normal(),
             error: vertex.point.error,
             both_sides: vertex.bsdf.transmits(),
+            is_at_a_photon: false,
         }
     }
 }
@@ -184,7 +187,9 @@ impl PhotonMap {
         }
     }
 
-    /// Estimates the irradiance on one side of a surface; as [`PhotonMap::estimate_radiance`] otherwise.
+    /// Estimates the irradiance on one side of a surface where a photon landed; as [`PhotonMap::estimate_radiance`]
+    /// otherwise. The photon itself does not count: that there is one is why the place was chosen, and with it uniform
+    /// fields would seem brighter by 1/k and more.
     ///
     /// - `normal`: unit, on the side that is asked about.
     /// - `error`: bound on the error of `position`, metres.
@@ -201,6 +206,7 @@ impl PhotonMap {
             normal,
             error,
             both_sides: false,
+            is_at_a_photon: true,
         };
         self.estimate(&site, scratch, |_| Rgb::WHITE)
     }
@@ -239,7 +245,7 @@ impl PhotonMap {
         } = self.density;
         let error_sq = site.error * site.error;
         let accept = |slot: u32, offset: Vec3, dist_sq: f32| {
-            is_on_surface(offset, site.normal, dist_sq, error_sq) && {
+            (!site.is_at_a_photon || dist_sq > 0.0) && is_on_surface(offset, site.normal, dist_sq, error_sq) && {
                 let cosine = self.columns.normal[slot as usize].dot(site.normal);
                 (if site.both_sides { cosine.abs() } else { cosine }) >= MIN_NORMAL_COSINE
             }

@@ -68,7 +68,7 @@ impl PhotonMaps {
         self.sum(|map, scratch| map.estimate_radiance(vertex, scratch), scratch)
     }
 
-    /// Estimates the irradiance on one side of a surface, from every map.
+    /// Estimates the irradiance on one side of a surface where a photon landed, from every map; the photon itself does not count.
     ///
     /// - `normal`: unit, on the side that is asked about.
     /// - `error`: bound on the error of `position`, metres.
