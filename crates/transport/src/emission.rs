@@ -134,7 +134,7 @@ impl<'a> EmissionSampler<'a> {
                     return None;
                 }
                 let origin = spawn_origin(surface.p, surface.error, surface.ng, direction);
-                let radiance = shine.at(sampler, surface.primitive, surface.p, surface.uv, time);
+                let radiance = shine.sent_at(sampler, surface.primitive, surface.p, surface.uv, time);
                 let flux = radiance * (cos * sides / (surface.pdf_area * pdf));
                 (Ray::new(origin, direction), flux)
             }
@@ -305,7 +305,7 @@ fn flux_to_targets(light: &Light, targets: &[TargetSphere]) -> f64 {
                 cones(surface.ng) + if *two_sided { cones(-surface.ng) } else { 0.0 }
             };
             let mean = (0..PROBES).map(probe).sum::<f32>() / PROBES as f32;
-            shine.mean.mean() * sampler.area() as f32 * mean
+            shine.mean_sent().mean() * sampler.area() as f32 * mean
         }
         Light::Distant(disc) => {
             let (_, pdf) = disc.sample(Vec2::splat(0.5), TIME);

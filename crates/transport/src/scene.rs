@@ -160,8 +160,10 @@ impl Scene {
                 && material_of_instance.iter().all(|m| (*m as usize) < materials.len()),
             "every instance has a material"
         );
-        let lights = LightTable::new(&rays, lights);
         let material = |i: u32| &materials[material_of_instance[i as usize] as usize];
+        let lights = LightTable::new(&rays, lights, |i| {
+            material(i).textured.clone().filter(|t| t.has_alpha())
+        });
         let rows = 0..instances as u32;
         let passages: Vec<Passage> = rows.clone().map(|i| Passage::of(material(i))).collect();
         let targets = rows.clone().filter(|i| material(*i).has_specular()).map(|i| {

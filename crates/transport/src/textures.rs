@@ -1,6 +1,6 @@
 //! What of a material changes from point to point.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use radiometry::Rgb;
 use scattering::{Bsdf, DiffuseBsdf, PrincipledBsdf, PrincipledParameters};
 use spatial::{RayScene, SurfacePoint};
@@ -54,9 +54,15 @@ impl Input<Rgb> {
 impl Input<f32> {
     #[inline]
     fn at(&self, rays: &RayScene, point: &SurfacePoint) -> f32 {
+        self.at_coordinates(|set| rays.uv_set(point, set))
+    }
+
+    /// - `uv`: gives the coordinates in a set.
+    #[inline]
+    fn at_coordinates(&self, uv: impl Fn(u32) -> Vec2) -> f32 {
         match self {
             Self::Constant(number) => *number,
-            Self::Texture(texture) => texture.value(rays.uv_set(point, texture.uv_set)),
+            Self::Texture(texture) => texture.value(uv(texture.uv_set)),
         }
     }
 
@@ -256,14 +262,31 @@ impl TexturedSurface {
     /// How much of the surface is there at a point, in [0, 1].
     #[must_use]
     pub fn alpha(&self, rays: &RayScene, point: &SurfacePoint) -> f32 {
+        self.alpha_at(|set| rays.uv_set(point, set), || rays.vertex_colour(point).w)
+    }
+
+    /// [`TexturedSurface::alpha`] where there is a place, but no hit.
+    ///
+    /// - `uv`: gives its coordinates in a set.
+    /// - `vertex_alpha`: gives the coverage of the vertices there.
+    pub(crate) fn alpha_at(&self, uv: impl Fn(u32) -> Vec2, vertex_alpha: impl Fn() -> f32) -> f32 {
         let Some(coverage) = &self.inputs.coverage else {
             return 1.0;
         };
-        let mut alpha = coverage.alpha.at(rays, point);
+        let mut alpha = coverage.alpha.at_coordinates(uv);
         if self.inputs.vertex_colours {
-            alpha *= rays.vertex_colour(point).w;
+            alpha *= vertex_alpha();
         }
         coverage.cut(alpha)
+    }
+
+    /// True when nothing of the surface is there anywhere. Cost: a look at every texel.
+    pub(crate) fn is_nowhere(&self) -> bool {
+        let most = |coverage: &Coverage| coverage.cut(coverage.alpha.range()[1]);
+        self.inputs
+            .coverage
+            .as_ref()
+            .is_some_and(|coverage| most(coverage) <= 0.0)
     }
 
     /// True when the surface may be less than whole anywhere.
