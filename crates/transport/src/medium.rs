@@ -156,6 +156,8 @@ pub(crate) fn follow(
             let alpha = scene.alpha(&point);
             cutouts += 1;
             if alpha < 1.0 && u(cutouts - 1) >= alpha {
+                // What is behind a hole in glass is the inside of it all the same.
+                medium.pass(scene, &point, segment.direction);
                 segment.origin = spawn_origin(point.p, point.error, point.ng, segment.direction);
                 continue;
             }
@@ -190,6 +192,7 @@ pub(crate) fn unblocked(scene: &Scene, mut medium: PathMedium, ray: &Ray) -> Opt
             medium.pass(scene, &point, segment.direction);
         } else if scene.passage(&point).has_alpha {
             left *= 1.0 - scene.alpha(&point).clamp(0.0, 1.0);
+            medium.pass(scene, &point, segment.direction);
         } else {
             return None;
         }

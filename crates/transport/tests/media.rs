@@ -7,7 +7,9 @@ use glam::{DAffine3, Vec2, Vec3};
 use radiometry::Rgb;
 use scattering::{Bsdf, DielectricBsdf, Dispersion, Microsurface};
 use spatial::{Ray, Shape};
-use transport::{Environment, LightSource, Material, Scene};
+use transport::{
+    Coverage, Environment, Input, LightSource, Material, PrincipledInputs, Scene, SurfaceInputs, TexturedBsdf,
+};
 
 fn clear(ior: f32, absorption: f32, priority: i8) -> Material {
     Material {
@@ -196,4 +198,68 @@ fn dispersive_glass_is_white_in_a_white_furnace_and_colours_an_edge() {
     assert!(red > green + 0.05 && green > blue + 0.05, "{red} {green} {blue}");
     let [red, _, blue] = spread(prism(None));
     assert!((red - blue).abs() < 1e-6);
+}
+
+/// A clear solid of index 1, which neither bends nor reflects, of which only a part is there.
+fn pierced(alpha: f32, absorption: f32) -> Material {
+    let number = Input::Constant::<f32>;
+    let inputs = PrincipledInputs {
+        base_color: Input::Constant(Rgb::WHITE),
+        metallic: number(0.0),
+        roughness: number(0.0),
+        specular: number(1.0),
+        specular_color: Input::Constant(Rgb::WHITE),
+        transmission: number(1.0),
+        clearcoat: number(0.0),
+        clearcoat_roughness: number(0.0),
+        sheen: Input::Constant(Rgb::BLACK),
+        sheen_roughness: number(0.0),
+        ior: 1.0,
+        solid: true,
+        specular_alpha: 0.05,
+    };
+    let inputs = SurfaceInputs {
+        bsdf: TexturedBsdf::Principled(Box::new(inputs)),
+        normal: None,
+        coverage: Some(Coverage {
+            alpha: number(alpha),
+            cutoff: None,
+        }),
+        vertex_colours: false,
+    };
+    Material {
+        absorption: Rgb::splat(absorption),
+        ..Material::from_inputs(inputs)
+    }
+}
+
+#[test]
+fn the_inside_of_glass_with_holes_begins_and_ends_at_its_surface() {
+    let (shape, place) = slab(0.0, 1.0);
+    for alpha in [0.0, 0.5, 1.0] {
+        let seen = through(&scene(&[(shape, place, pierced(alpha, 0.7))], white_sky()));
+        let expected = f64::from(radiometry::math::exp(-0.7));
+        assert!((seen - expected).abs() < 1e-4, "{alpha}: {seen}, not {expected}");
+        // A wall in it, lit by a lamp before it.
+        let lamp = LightSource::Area {
+            instance: 2,
+            radiance: Rgb::splat(50.0),
+            texture: None,
+            two_sided: true,
+        };
+        let wall = Shape::Quad { size: Vec2::ONE };
+        let lit = |alpha| {
+            let scene = scene(
+                &[
+                    (shape, place, pierced(alpha, 0.7)),
+                    (wall, at(0.0, 0.0, 0.5), diffuse(0.5)),
+                    (Shape::Disc { radius: 0.4 }, at(0.8, 0.0, -1.0), black()),
+                ],
+                vec![lamp.clone()],
+            );
+            colour(&scene, Ray::new(Vec3::new(0.0, 0.1, -3.0), Vec3::Z), 1 << 15)[1]
+        };
+        let (part, whole) = (lit(alpha), lit(1.0));
+        assert!((part / whole - 1.0).abs() < 0.03, "{alpha}: {part}, not {whole}");
+    }
 }

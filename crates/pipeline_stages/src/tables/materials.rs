@@ -197,6 +197,13 @@ impl Rows<'_> {
                 continue;
             };
             row.needs_inside = material.has_inside();
+            if row.needs_inside && material.has_alpha() {
+                let message = format!("the glass of `{}` has holes: `alpha` is below 1", self.path(prim));
+                let place = field_place(self.scene, prim, fields.component, &["alpha", "alpha_texture"]);
+                let finding = Diagnostic::warning("alpha-in-glass", message)
+                    .note("what is behind a hole is still its inside, and absorbs; `transmission` makes it clear");
+                findings.push_at(place, finding);
+            }
             row.row = self.add(material);
             self.of_prim.insert(prim, row);
         }
