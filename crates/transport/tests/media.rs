@@ -4,11 +4,12 @@ mod common;
 
 use common::{at, black, colour, diffuse, scene};
 use glam::{DAffine3, Vec2, Vec3};
-use radiometry::Rgb;
+use radiometry::{Rgb, SampleStream};
 use scattering::{Bsdf, DielectricBsdf, Dispersion, Microsurface};
 use spatial::{Ray, Shape};
 use transport::{
-    Coverage, Environment, Input, LightSource, Material, PrincipledInputs, Scene, SurfaceInputs, TexturedBsdf,
+    Coverage, EmissionSampler, Environment, Input, LightSource, MapKind, MapKinds, Material, PHOTON_STAGE, PathMedium,
+    PrincipledInputs, Scene, SurfaceInputs, TexturedBsdf, trace_photon,
 };
 
 fn clear(ior: f32, absorption: f32, priority: i8) -> Material {
@@ -262,4 +263,41 @@ fn the_inside_of_glass_with_holes_begins_and_ends_at_its_surface() {
         let (part, whole) = (lit(alpha), lit(1.0));
         assert!((part / whole - 1.0).abs() < 0.03, "{alpha}: {part}, not {whole}");
     }
+}
+
+#[test]
+fn paths_know_what_they_begin_in() {
+    // A wall and a bubble in water, a lamp and the eye between them.
+    let (water, bubble) = (slab(0.0, 4.0), Shape::Sphere { radius: 0.25 });
+    let wall = Shape::Quad { size: Vec2::splat(8.0) };
+    let eye = Vec3::new(0.0, 0.5, 1.0);
+    let scene = scene(
+        &[
+            (water.0, water.1, clear(1.33, 0.4, 0)),
+            (wall, at(0.0, 0.0, 3.0), diffuse(0.5)),
+            (bubble, at(0.0, 0.5, 2.0), clear(1.0, 0.0, 0)),
+        ],
+        vec![common::point_light(Vec3::new(0.0, -0.5, 1.0), Rgb::WHITE)],
+    );
+    let around = |p: Vec3| PathMedium::at(&scene, p, 0.0);
+    assert_eq!(around(Vec3::new(0.0, 0.0, -1.0)), PathMedium::VACUUM);
+    assert_ne!(around(eye), PathMedium::VACUUM);
+    assert_ne!(around(Vec3::new(0.0, 0.5, 2.0)), around(eye));
+    // Photons are absorbed on the way to the wall as shadow rays are.
+    let sampler = EmissionSampler::uniform(&scene.lights);
+    let mut direct = 0;
+    for path in 0..2000 {
+        let stream = SampleStream::new(0, PHOTON_STAGE, 0, path);
+        let Some(emitted) = sampler.emit(&stream) else { continue };
+        let wanted = MapKinds::default().with(MapKind::Direct);
+        trace_photon(&scene, &emitted, wanted, 4, path, &stream, |deposit| {
+            let left = radiometry::math::exp(-0.4 * deposit.position.distance(emitted.ray.origin));
+            assert!((deposit.flux.g / emitted.flux.g - left).abs() < 1e-5);
+            direct += 1;
+        });
+    }
+    assert!(direct > 500, "{direct}");
+    // From water into air, light is reflected in whole beyond 48.8°: at 0.22 of 0.25 from the middle of the bubble.
+    let seen = |x: f32| colour(&scene, Ray::new(eye + Vec3::X * x, Vec3::Z), 4096)[1];
+    assert!(seen(0.22) < 0.3 * seen(0.3), "{} {}", seen(0.22), seen(0.3));
 }
