@@ -113,7 +113,7 @@ impl<'a> EmissionSampler<'a> {
                     one_minus_cos: cone.one_minus_cos(),
                 };
                 let (direction, pdf) = draw.direction(&cones, shine)?;
-                let falloff = cone.falloff(direction.dot(axis));
+                let falloff = cone.falloff(direction, axis);
                 (Ray::new(position, direction), *intensity * (falloff / pdf))
             }
             Light::Area {
@@ -256,7 +256,7 @@ impl Shine {
             Self::Everywhere => warp::PDF_UNIFORM_SPHERE,
             Self::Lambert(n) => warp::pdf_cosine_hemisphere(n.dot(direction)),
             // Rounding may carry a sample out of the cone, where next to no light is.
-            Self::Cone { axis, one_minus_cos } if 1.0 - axis.dot(direction) <= one_minus_cos => {
+            Self::Cone { axis, one_minus_cos } if 0.5 * (direction - axis).length_squared() <= one_minus_cos => {
                 1.0 / (TAU * one_minus_cos)
             }
             Self::Cone { .. } => 0.0,
@@ -291,7 +291,7 @@ fn flux_to_targets(light: &Light, targets: &[TargetSphere]) -> f64 {
         Light::Spot { frame, intensity, cone } => {
             let cones = Cones::seen_from(targets, frame.position(TIME), None);
             let axis = -frame.back(TIME);
-            intensity.mean() * cones.weighted(|direction| cone.falloff(direction.dot(axis)))
+            intensity.mean() * cones.weighted(|direction| cone.falloff(direction, axis))
         }
         Light::Area {
             sampler,

@@ -10,12 +10,11 @@ use pipeline_data::vocabulary::{
 use pipeline_data::{
     Acceleration, EnvironmentMaps, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, WorldMotion, WorldTransform,
 };
-use radiometry::{Rgb, math};
+use radiometry::Rgb;
 use scene_format::{Diagnostic, Place, Scene};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::sync::Arc;
-use transport::{Environment, Input, LightSource, MovingFrame, SpotCone};
+use transport::{Environment, LightSource, MovingFrame, SpotCone};
 
 /// All lights that shine, in the order of the scene. On its way to `join_tables`.
 #[derive(Resource, Default)]
@@ -236,15 +235,10 @@ impl Collector<'_> {
             self.findings.push_at(place, Diagnostic::error("out-of-range", message));
             return;
         }
-        let cosine = |degrees: f32| math::cos(degrees.to_radians());
-        let cone = SpotCone {
-            cos_inner: cosine(light.inner_angle),
-            cos_outer: cosine(light.outer_angle),
-        };
+        let cone = SpotCone::from_half_angles(light.inner_angle.to_radians(), light.outer_angle.to_radians());
         let intensity: Rgb = match light.intensity {
             Some(intensity) => intensity.into(),
-            // Φ = π I (2 − cos inner − cos outer).
-            None => Rgb::from(light.power) * (1.0 / (PI * f64::from(2.0 - cone.cos_inner - cone.cos_outer))) as f32,
+            None => Rgb::from(light.power) * (1.0 / cone.solid_angle()),
         };
         let Some(frame) = self.frame(prim, world, motion) else {
             return;

@@ -150,9 +150,7 @@ impl Light {
         let disc = PI * radius * radius;
         match self {
             Self::Point { intensity, .. } => 4.0 * PI * f64::from(intensity.mean()),
-            Self::Spot { intensity, cone, .. } => {
-                PI * f64::from(intensity.mean() * (2.0 - cone.cos_inner - cone.cos_outer))
-            }
+            Self::Spot { intensity, cone, .. } => f64::from(intensity.mean() * cone.solid_angle()),
             Self::Area { sampler, .. } => self.power_of_area(sampler.area()),
             Self::Distant(light) if light.is_point() => disc * f64::from(light.radiance.mean()),
             Self::Distant(light) => disc * f64::from(light.radiance.mean() / light.pdf()),
@@ -207,7 +205,8 @@ impl Light {
                     Facing {
                         axis: -frame.back(0.0),
                         cos_spread: 1.0,
-                        cos_emission: cone.cos_outer,
+                        // Rounding must not hide the light from where a narrow cone reaches.
+                        cos_emission: 1.0 - cone.one_minus_cos() - 1e-6,
                         two_sided: false,
                     }
                 },
@@ -256,7 +255,7 @@ impl Light {
             Self::Spot { frame, intensity, cone } => {
                 let axis = frame.back(time);
                 LightSample::of_point(from, frame.position(time), probability, |wi| {
-                    *intensity * cone.falloff(wi.dot(axis))
+                    *intensity * cone.falloff(wi, axis)
                 })
             }
             Self::Area {
