@@ -28,8 +28,8 @@ impl Material {
     /// Cost: a look at every texel, to know which lobes it has anywhere.
     #[must_use]
     pub fn from_inputs(inputs: SurfaceInputs) -> Self {
-        let is_constant = inputs.is_constant();
         let textured = TexturedSurface::new(inputs);
+        let is_constant = textured.is_constant();
         Self {
             bsdf: textured.clearest(),
             textured: (!is_constant).then(|| Arc::new(textured)),

@@ -142,10 +142,13 @@ impl PrincipledInputs {
         ]
         .map(Input::range);
         let [metallic, transmission, roughness, clearcoat, clearcoat_roughness] = ranges;
+        // All of these look at every texel.
+        let (base_color, specular_color, sheen) = (self.base_color.max(), self.specular_color.max(), self.sheen.max());
+        let (specular, sheen_roughness) = (self.specular.range()[1], self.sheen_roughness.range()[1]);
         let corner = |choice: usize| {
             let of = |range: [f32; 2], bit: usize| range[choice >> bit & 1];
             let parameters = PrincipledParameters {
-                base_color: self.base_color.max(),
+                base_color,
                 metallic: of(metallic, 0),
                 // Counted from the greatest, so that the first corner is the clearest.
                 transmission: of([transmission[1], transmission[0]], 1),
@@ -153,11 +156,11 @@ impl PrincipledInputs {
                 clearcoat: of(clearcoat, 3),
                 clearcoat_roughness: of(clearcoat_roughness, 4),
                 ior: self.ior,
-                specular: self.specular.range()[1],
-                specular_color: self.specular_color.max(),
+                specular,
+                specular_color,
                 solid: self.solid,
-                sheen: self.sheen.max(),
-                sheen_roughness: self.sheen_roughness.range()[1],
+                sheen,
+                sheen_roughness,
             };
             PrincipledBsdf::new(&parameters, self.specular_alpha)
         };
@@ -294,22 +297,22 @@ impl TexturedSurface {
     pub fn has_alpha(&self) -> bool {
         self.has_alpha
     }
-}
 
-impl SurfaceInputs {
     /// True when nothing changes from point to point, and nothing is missing.
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        let is_constant = match &self.bsdf {
+        let inputs = &self.inputs;
+        let is_constant = match &inputs.bsdf {
             TexturedBsdf::Diffuse(albedo) => albedo.is_constant(),
-            TexturedBsdf::Principled(inputs) => inputs.is_constant(),
+            TexturedBsdf::Principled(layers) => layers.is_constant(),
         };
-        is_constant && self.normal.is_none() && !self.vertex_colours && !self.has_alpha()
+        is_constant && inputs.normal.is_none() && !inputs.vertex_colours && !self.has_alpha
     }
+}
 
-    /// True when the surface may be less than whole anywhere.
-    #[must_use]
-    pub fn has_alpha(&self) -> bool {
+impl SurfaceInputs {
+    /// True when the surface may be less than whole anywhere. Cost: a look at every texel.
+    fn has_alpha(&self) -> bool {
         let least = |coverage: &Coverage| coverage.cut(coverage.alpha.range()[0]);
         let coverage = self.coverage.as_ref();
         coverage.is_some_and(|coverage| self.vertex_colours || least(coverage) < 1.0)
