@@ -181,14 +181,11 @@ impl Collector<'_> {
             self.dark.get_or_insert((glow.material, "Principled"));
             return;
         }
-        let radiance = glow.radiance.mean();
+        let radiance = glow.radiance;
         let source = LightSource::Area {
             instance,
             radiance,
-            texture: match &glow.radiance {
-                Input::Texture(texture) => Some(Arc::new((**texture).clone())),
-                Input::Constant(_) => None,
-            },
+            texture: glow.texture.clone(),
             two_sided: false,
         };
         self.add(glow.material, "Principled", radiance, source);
