@@ -101,7 +101,7 @@ pub(super) fn list_lights(
             collector.add_distant(prim, distant, world, motion);
         }
         if let Some(environment) = environment {
-            collector.add_environment(prim, environment, world);
+            collector.add_environment(prim, environment, world, motion);
         }
     }
     for (instance, glow) in (0..).zip(&materials.glow_of_instance) {
@@ -269,7 +269,13 @@ impl Collector<'_> {
         self.add(prim, "DistantLight", irradiance, source);
     }
 
-    fn add_environment(&mut self, prim: u32, light: &EnvironmentLight, world: &WorldTransform) {
+    fn add_environment(
+        &mut self,
+        prim: u32,
+        light: &EnvironmentLight,
+        world: &WorldTransform,
+        motion: Option<&WorldMotion>,
+    ) {
         let place = component_place(self.scene, prim, "EnvironmentLight");
         if let Some(first) = self.environment {
             let message = format!(
@@ -290,6 +296,15 @@ impl Collector<'_> {
         if light.file.is_some() && map.is_none() {
             // It could not be read, which was reported.
             return;
+        }
+        let turns = |keys: &WorldMotion| keys.0.windows(2).any(|pair| pair[0].matrix3 != pair[1].matrix3);
+        if map.is_some() && motion.is_some_and(turns) {
+            let message = format!(
+                "the environment of `{}` is not blurred by its rotation",
+                self.path(prim)
+            );
+            let finding = Diagnostic::warning("without-effect", message).note("it stands as at the frame");
+            self.findings.push_at(place, finding);
         }
         let radiance = match &map {
             Some(_) => Rgb::splat(light.scale),
