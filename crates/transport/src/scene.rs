@@ -75,6 +75,12 @@ impl Material {
         self.anywhere(Bsdf::has_specular)
     }
 
+    /// True when a lobe is delta anywhere on the surface.
+    #[must_use]
+    pub fn has_delta(&self) -> bool {
+        self.anywhere(Bsdf::has_delta)
+    }
+
     /// True when a lobe passes light to the other side anywhere on the surface.
     #[must_use]
     pub fn transmits(&self) -> bool {

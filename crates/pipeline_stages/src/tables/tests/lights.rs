@@ -184,6 +184,10 @@ fn caustics_that_tracing_cannot_find_are_a_warning() {
         warnings(&app).contains("warning[unreachable-caustics]")
     };
     assert!(warned("Trace", "Dielectric: ()"));
+    assert!(warned("Trace", "Plastic: (roughness: 0)"));
+    assert!(warned("Trace", "Principled: (roughness: 0)"));
+    assert!(warned("Trace", "Principled: (clearcoat: 0.5)"));
+    assert!(!warned("Trace", "Plastic: (roughness: 0.5)"));
     assert!(!warned("PhotonMap", "Dielectric: ()"));
     assert!(!warned("Trace", "Diffuse: ()"));
     assert!(
