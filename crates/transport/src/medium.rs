@@ -29,7 +29,7 @@ impl PathMedium {
     #[must_use]
     pub fn at(scene: &Scene, p: Vec3, time: f32) -> Self {
         /// Unit, and along nothing that scenes are built along.
-        const PROBE: Vec3 = Vec3::new(0.365_148_37, 0.547_722_56, 0.752_772_65);
+        const PROBE: Vec3 = Vec3::new(0.365_148_37, 0.547_722_6, 0.752_772_6);
         let mut medium = Self::VACUUM;
         if !scene.may_be_inside(p) {
             return medium;
