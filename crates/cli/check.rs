@@ -16,7 +16,7 @@ pub(crate) fn execute(options: &CheckArgs) -> Result<(), Failure> {
     print(&summary(&app))
 }
 
-/// `ok: 12 prims, 8 of them geometry, 512x512 pixels, 64 samples a pixel`
+/// `ok: 12 prims, 8 shapes, 512x512 pixels, 64 samples a pixel`: prims that are rendered, and those with geometry.
 fn summary(app: &App) -> String {
     let world = app.world();
     let mut text = String::from("ok");

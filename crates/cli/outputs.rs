@@ -2,6 +2,7 @@
 
 use crate::exit::Failure;
 use crate::parse::Format;
+use std::collections::BTreeSet;
 use std::fs::{self, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -41,6 +42,27 @@ pub(crate) fn check_writable<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -
                 path.display()
             ))
         })?;
+    }
+    Ok(())
+}
+
+/// Makes sure that no file is written over another.
+///
+/// # Errors
+/// The first that is named twice.
+pub(crate) fn check_distinct<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> Result<(), Failure> {
+    let mut known = BTreeSet::new();
+    for path in paths {
+        // A folder has many names; the file need not be there yet.
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or(Path::new("."));
+        let folder = fs::canonicalize(folder).unwrap_or_else(|_| folder.to_path_buf());
+        if !known.insert((folder, path.file_name())) {
+            return Err(Failure::bad_input(format!(
+                "{} is to be written twice; give each output, --profile and --trace a file of its own",
+                path.display()
+            )));
+        }
     }
     Ok(())
 }

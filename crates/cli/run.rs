@@ -42,6 +42,7 @@ pub(crate) fn render(
             "--resume needs the files of the interrupted render; give them with -o",
         ));
     }
+    outputs::check_distinct(outputs.iter().chain(&options.profile).chain(&options.trace))?;
     outputs::check_writable(outputs.iter().chain(&options.profile).chain(&options.trace))?;
     session::use_threads(options.threads)?;
     let mut app = session::new_app();

@@ -73,6 +73,15 @@ fn mistakes_exit_with_2_and_say_what_is_expected() {
         ("run scene.ron --variant nonsense", "nonsense"),
         ("run none.ron", "none.ron"),
         ("profile scene.ron --resume", "give them with -o"),
+        ("run scene.ron -o a.png -o ./a.png", "./a.png is to be written twice"),
+        (
+            "run scene.ron --profile t.json --trace t.json",
+            "t.json is to be written twice",
+        ),
+        (
+            "profile scene.ron -o a.exr --trace a.exr",
+            "a.exr is to be written twice",
+        ),
         ("schema Camra", "did you mean `Camera`?"),
         ("compare one.exr", "<REFERENCE>"),
         ("compare one.exr two.exr", "one.exr"),

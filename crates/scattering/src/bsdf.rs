@@ -116,6 +116,19 @@ impl Bsdf {
         }
     }
 
+    /// True when a lobe is delta, so that no light can be connected through it: a mirror, clear glass, a smooth coat.
+    #[inline]
+    #[must_use]
+    pub fn has_delta(&self) -> bool {
+        match self {
+            Self::Black | Self::Diffuse(_) => false,
+            Self::Conductor(b) => b.surface().is_smooth(),
+            Self::Dielectric(b) => b.surface().is_smooth(),
+            Self::Plastic(b) => b.surface().is_smooth(),
+            Self::Principled(b) => b.has_delta(),
+        }
+    }
+
     /// Evaluates `f(ω_o, ω_i)·|cosθ_i|` of the non-delta lobes, by class, in sr⁻¹; delta lobes contribute zero.
     ///
     /// Under [`Transport::Flux`] it is the adjoint:

@@ -19,6 +19,8 @@ pub struct DielectricBsdf {
     pub(crate) ior: f32,
     pub(crate) tint: Rgb,
     pub(crate) surface: Microsurface,
+    /// What was asked for; `surface` is smooth where this index hardly spreads light, and another one may.
+    asked: Microsurface,
     pub(crate) interface: RoughInterface,
     thin: bool,
 }
@@ -51,6 +53,7 @@ impl DielectricBsdf {
 
     /// As [`Self::new`], with the two averages at hand: cheap enough to be built when it is evaluated.
     pub(crate) fn with_fresnel_averages(ior: f32, tint: Rgb, surface: Microsurface, averages: [f32; 2]) -> Self {
+        let asked = surface;
         let smooth = surface.alpha() * (ior - 1.0).abs() < SMOOTH_SPREAD;
         let surface = if smooth { Microsurface::SMOOTH } else { surface };
         let mut interface = RoughInterface::default();
@@ -65,6 +68,7 @@ impl DielectricBsdf {
             ior,
             tint,
             surface: surface.with_energy_compensation(compensated),
+            asked,
             interface,
             thin: false,
         }
@@ -81,6 +85,7 @@ impl DielectricBsdf {
             ior,
             tint,
             surface: Microsurface::SMOOTH,
+            asked: Microsurface::SMOOTH,
             interface: RoughInterface::default(),
             thin: true,
         }
@@ -88,10 +93,10 @@ impl DielectricBsdf {
 
     /// The same closed surface with another index.
     pub(crate) fn with_ior(&self, ior: f32) -> Self {
-        Self::new(ior, self.tint, self.surface)
+        Self::new(ior, self.tint, self.asked)
     }
 
-    /// The surface that the interface has; smooth for a pane.
+    /// The surface that the interface has; smooth for a pane, and where it hardly bends light.
     #[inline]
     #[must_use]
     pub fn surface(&self) -> Microsurface {
@@ -180,5 +185,24 @@ impl DielectricBsdf {
             return once;
         }
         once * (1.0 - refraction_loss(self.surface.alpha(), self.eta_from(wo)).at(wo.z.abs()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Bsdf;
+
+    #[test]
+    fn a_frosted_bubble_is_frosted_again_in_glass() {
+        let frosted = Microsurface::from_roughness(0.5, 0.05);
+        let bubble = Bsdf::Dielectric(DielectricBsdf::new(1.0, Rgb::WHITE, frosted));
+        assert!(!bubble.needs_light_sampling());
+        let in_glass = bubble.with_relative_ior(1.0 / 1.5);
+        assert_eq!(
+            in_glass,
+            Bsdf::Dielectric(DielectricBsdf::new(1.0 / 1.5, Rgb::WHITE, frosted))
+        );
+        assert!(in_glass.needs_light_sampling() && in_glass.has_diffuse());
     }
 }

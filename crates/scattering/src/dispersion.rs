@@ -20,7 +20,7 @@ impl Dispersion {
     /// Fits the two coefficients.
     ///
     /// - `ior`: index at the d line, > 0.
-    /// - `abbe`: Abbe number, > 0: crown glass 59, flint 36, diamond 55, water 56. Low spreads colours more.
+    /// - `abbe`: Abbe number, at least 5: crown glass 59, flint 36, diamond 55, water 56. Low spreads colours more.
     #[must_use]
     pub fn from_abbe(ior: f32, abbe: f32) -> Self {
         let b = (ior - 1.0) / (abbe * (1.0 / (F_LINE * F_LINE) - 1.0 / (C_LINE * C_LINE)));

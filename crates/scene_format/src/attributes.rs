@@ -76,6 +76,15 @@ impl Range {
         }
     }
 
+    /// The same between bounds that a number of single precision can be: 0.01 as such a number is less than 0.01.
+    pub(crate) fn in_single_precision(self) -> Self {
+        Self {
+            min: f64::from(self.min as f32),
+            max: f64::from(self.max as f32),
+            ..self
+        }
+    }
+
     /// Whether `x` is allowed; NaN never is.
     pub fn contains(&self, x: f64) -> bool {
         let above = if self.min_open { x > self.min } else { x >= self.min };

@@ -58,7 +58,7 @@ impl Picture {
             channels,
             texels,
         };
-        picture.make_finite()?;
+        picture.check_and_clamp()?;
         Ok(picture)
     }
 
@@ -78,12 +78,17 @@ impl Picture {
         if let Texels::F32(values) = &mut self.texels {
             values.iter_mut().for_each(|value| *value *= factor);
         }
-        self.make_finite()?;
+        self.check_and_clamp()?;
         Ok(self)
     }
 
-    /// Colours outside of Rec.709 have negative values, which no light and no surface has.
-    fn make_finite(&mut self) -> Result<(), TextureError> {
+    /// Refuses numbers that are not finite, and makes negative ones 0: colours outside of Rec.709 have some, which no light
+    /// and no surface has.
+    ///
+    /// # Errors
+    ///
+    /// [`TextureError::NotFinite`], with the first such texel.
+    fn check_and_clamp(&mut self) -> Result<(), TextureError> {
         let Texels::F32(values) = &mut self.texels else {
             return Ok(());
         };

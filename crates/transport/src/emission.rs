@@ -113,7 +113,7 @@ impl<'a> EmissionSampler<'a> {
                     one_minus_cos: cone.one_minus_cos(),
                 };
                 let (direction, pdf) = draw.direction(&cones, shine)?;
-                let falloff = cone.falloff(direction.dot(axis));
+                let falloff = cone.falloff(direction, axis);
                 (Ray::new(position, direction), *intensity * (falloff / pdf))
             }
             Light::Area {
@@ -134,7 +134,7 @@ impl<'a> EmissionSampler<'a> {
                     return None;
                 }
                 let origin = spawn_origin(surface.p, surface.error, surface.ng, direction);
-                let radiance = shine.at(sampler, surface.primitive, surface.p, surface.uv, time);
+                let radiance = shine.sent_at(sampler, surface.primitive, surface.p, surface.uv, time);
                 let flux = radiance * (cos * sides / (surface.pdf_area * pdf));
                 (Ray::new(origin, direction), flux)
             }
@@ -256,7 +256,7 @@ impl Shine {
             Self::Everywhere => warp::PDF_UNIFORM_SPHERE,
             Self::Lambert(n) => warp::pdf_cosine_hemisphere(n.dot(direction)),
             // Rounding may carry a sample out of the cone, where next to no light is.
-            Self::Cone { axis, one_minus_cos } if 1.0 - axis.dot(direction) <= one_minus_cos => {
+            Self::Cone { axis, one_minus_cos } if 0.5 * (direction - axis).length_squared() <= one_minus_cos => {
                 1.0 / (TAU * one_minus_cos)
             }
             Self::Cone { .. } => 0.0,
@@ -291,7 +291,7 @@ fn flux_to_targets(light: &Light, targets: &[TargetSphere]) -> f64 {
         Light::Spot { frame, intensity, cone } => {
             let cones = Cones::seen_from(targets, frame.position(TIME), None);
             let axis = -frame.back(TIME);
-            intensity.mean() * cones.weighted(|direction| cone.falloff(direction.dot(axis)))
+            intensity.mean() * cones.weighted(|direction| cone.falloff(direction, axis))
         }
         Light::Area {
             sampler,
@@ -305,7 +305,7 @@ fn flux_to_targets(light: &Light, targets: &[TargetSphere]) -> f64 {
                 cones(surface.ng) + if *two_sided { cones(-surface.ng) } else { 0.0 }
             };
             let mean = (0..PROBES).map(probe).sum::<f32>() / PROBES as f32;
-            shine.mean.mean() * sampler.area() as f32 * mean
+            shine.mean_sent().mean() * sampler.area() as f32 * mean
         }
         Light::Distant(disc) => {
             let (_, pdf) = disc.sample(Vec2::splat(0.5), TIME);

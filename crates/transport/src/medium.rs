@@ -20,6 +20,38 @@ impl PathMedium {
         wavelength: 0.0,
     };
 
+    /// The media around a place where a path begins.
+    ///
+    /// All surfaces with an inside that lie on the way out, in a direction that is always the same, are passed from the
+    /// outermost on. Where two media of equal priority overlap, the one entered last on that way counts.
+    ///
+    /// Cost: nothing where no box around such a geometry holds the place; else a ray for each surface on the way.
+    #[must_use]
+    pub fn at(scene: &Scene, p: Vec3, time: f32) -> Self {
+        /// Unit, and along nothing that scenes are built along.
+        const PROBE: Vec3 = Vec3::new(0.365_148_37, 0.547_722_6, 0.752_772_6);
+        let mut medium = Self::VACUUM;
+        if !scene.may_be_inside(p) {
+            return medium;
+        }
+        let mut ray = Ray {
+            time,
+            ..Ray::new(p, PROBE)
+        };
+        let mut passed = Vec::new();
+        while let Some(hit) = scene.rays.intersect(&ray) {
+            let point = scene.rays.surface(&ray, &hit);
+            if let Some(interior) = scene.interior(&point) {
+                passed.push((interior, PROBE.dot(point.ng) > 0.0));
+            }
+            ray.origin = spawn_origin(point.p, point.error, point.ng, PROBE);
+        }
+        for (interior, entering) in passed.into_iter().rev() {
+            medium.interiors.pass(interior, entering);
+        }
+        medium
+    }
+
     /// True from the first dispersive surface on.
     #[must_use]
     pub fn has_wavelength(&self) -> bool {
@@ -69,8 +101,8 @@ impl PathMedium {
 
     /// What a ray of this path sees less for the medium, over `distance` metres; up to `point`, where it ends there.
     ///
-    /// A path that began inside of glass, at a camera or a light there, does not know so; it arrives at the inner side of
-    /// the surface, which tells.
+    /// A path may not know that it is inside of glass, where it was in too many media at once; it arrives at the inner
+    /// side of the surface, which tells.
     #[inline]
     pub(crate) fn transmittance(&self, scene: &Scene, ray: &Ray, point: Option<&SurfacePoint>, distance: f32) -> Rgb {
         let absorption = match (self.interiors.current(), point) {
@@ -156,6 +188,8 @@ pub(crate) fn follow(
             let alpha = scene.alpha(&point);
             cutouts += 1;
             if alpha < 1.0 && u(cutouts - 1) >= alpha {
+                // What is behind a hole in glass is the inside of it all the same.
+                medium.pass(scene, &point, segment.direction);
                 segment.origin = spawn_origin(point.p, point.error, point.ng, segment.direction);
                 continue;
             }
@@ -190,6 +224,7 @@ pub(crate) fn unblocked(scene: &Scene, mut medium: PathMedium, ray: &Ray) -> Opt
             medium.pass(scene, &point, segment.direction);
         } else if scene.passage(&point).has_alpha {
             left *= 1.0 - scene.alpha(&point).clamp(0.0, 1.0);
+            medium.pass(scene, &point, segment.direction);
         } else {
             return None;
         }

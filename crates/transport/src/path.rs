@@ -64,9 +64,14 @@ pub(crate) const ROULETTE_DEPTH: u32 = 4;
 pub(crate) const ROULETTE_MAX: f32 = 0.95;
 
 /// Follows a ray to what it meets, and lets the material that it travels in absorb on the way.
+///
+/// A path that begins with this ray finds out what it begins in.
 #[inline]
 #[must_use]
 pub fn arrive(scene: &Scene, path: &mut Path, ray: &Ray) -> Option<SurfacePoint> {
+    if path.depth == 0 {
+        path.medium = PathMedium::at(scene, ray.origin, ray.time);
+    }
     let u = |cutout| path.stream.draw_1d(path.depth, dimension::CUTOUT + cutout);
     let (point, left) = follow(scene, &mut path.medium, ray, u);
     path.throughput *= left;

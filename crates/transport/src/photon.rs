@@ -164,7 +164,7 @@ pub fn trace_photon(
 ) {
     let (mut ray, mut flux) = (emitted.ray, emitted.flux);
     let mut kind = MapKind::Direct;
-    let mut medium = PathMedium::VACUUM;
+    let mut medium = PathMedium::at(scene, ray.origin, ray.time);
     for bounce in 0.. {
         let (Some(point), left) = follow(scene, &mut medium, &ray, |cutout| {
             stream.draw_1d(bounce + 1, dimension::CUTOUT + cutout)

@@ -4,7 +4,7 @@ use crate::textures::{SurfaceInputs, TexturedSurface};
 use glam::Vec3;
 use radiometry::Rgb;
 use scattering::{Bsdf, Dispersion, Interior};
-use spatial::{RayScene, SurfacePoint};
+use spatial::{Bounds, RayScene, SurfacePoint};
 use std::sync::Arc;
 
 /// What a surface is made of.
@@ -28,8 +28,8 @@ impl Material {
     /// Cost: a look at every texel, to know which lobes it has anywhere.
     #[must_use]
     pub fn from_inputs(inputs: SurfaceInputs) -> Self {
-        let is_constant = inputs.is_constant();
         let textured = TexturedSurface::new(inputs);
+        let is_constant = textured.is_constant();
         Self {
             bsdf: textured.clearest(),
             textured: (!is_constant).then(|| Arc::new(textured)),
@@ -75,6 +75,12 @@ impl Material {
         self.anywhere(Bsdf::has_specular)
     }
 
+    /// True when a lobe is delta anywhere on the surface.
+    #[must_use]
+    pub fn has_delta(&self) -> bool {
+        self.anywhere(Bsdf::has_delta)
+    }
+
     /// True when a lobe passes light to the other side anywhere on the surface.
     #[must_use]
     pub fn transmits(&self) -> bool {
@@ -108,6 +114,10 @@ pub struct Scene {
     diffuse_area: f64,
     /// Of each instance.
     passages: Vec<Passage>,
+    /// Boxes around all geometry with an inside.
+    media: Vec<Bounds>,
+    /// Around all of `media`.
+    all_media: Bounds,
     may_hide_surfaces: bool,
     has_alpha: bool,
 }
@@ -160,10 +170,18 @@ impl Scene {
                 && material_of_instance.iter().all(|m| (*m as usize) < materials.len()),
             "every instance has a material"
         );
-        let lights = LightTable::new(&rays, lights);
         let material = |i: u32| &materials[material_of_instance[i as usize] as usize];
+        let lights = LightTable::new(&rays, lights, |i| {
+            material(i).textured.clone().filter(|t| t.has_alpha())
+        });
         let rows = 0..instances as u32;
         let passages: Vec<Passage> = rows.clone().map(|i| Passage::of(material(i))).collect();
+        let has_inside = |i: &u32| passages[*i as usize].has_inside;
+        let media: Vec<Bounds> = rows
+            .clone()
+            .filter(has_inside)
+            .map(|i| rays.instance_bounds(i))
+            .collect();
         let targets = rows.clone().filter(|i| material(*i).has_specular()).map(|i| {
             let bounds = rays.instance_bounds(i);
             TargetSphere {
@@ -183,7 +201,9 @@ impl Scene {
             material_of_instance,
             targets,
             diffuse_area,
-            may_hide_surfaces: passages.iter().filter(|passage| passage.has_inside).count() > 1,
+            may_hide_surfaces: media.len() > 1,
+            all_media: media.iter().fold(Bounds::EMPTY, |all, one| all.union(one)),
+            media,
             has_alpha: passages.iter().any(|passage| passage.has_alpha),
             passages,
         }
@@ -232,6 +252,13 @@ impl Scene {
             let priority = self.material_by_row(medium).priority;
             Interior { medium, priority }
         })
+    }
+
+    /// False where no medium can be around a place.
+    #[inline]
+    pub(crate) fn may_be_inside(&self, p: Vec3) -> bool {
+        let holds = |bounds: &Bounds| p.cmpge(bounds.min).all() && p.cmple(bounds.max).all();
+        holds(&self.all_media) && self.media.iter().any(holds)
     }
 
     /// What the surface that was hit may do to a ray beside stopping it.

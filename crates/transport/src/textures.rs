@@ -1,6 +1,6 @@
 //! What of a material changes from point to point.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use radiometry::Rgb;
 use scattering::{Bsdf, DiffuseBsdf, PrincipledBsdf, PrincipledParameters};
 use spatial::{RayScene, SurfacePoint};
@@ -54,9 +54,15 @@ impl Input<Rgb> {
 impl Input<f32> {
     #[inline]
     fn at(&self, rays: &RayScene, point: &SurfacePoint) -> f32 {
+        self.at_coordinates(|set| rays.uv_set(point, set))
+    }
+
+    /// - `uv`: gives the coordinates in a set.
+    #[inline]
+    fn at_coordinates(&self, uv: impl Fn(u32) -> Vec2) -> f32 {
         match self {
             Self::Constant(number) => *number,
-            Self::Texture(texture) => texture.value(rays.uv_set(point, texture.uv_set)),
+            Self::Texture(texture) => texture.value(uv(texture.uv_set)),
         }
     }
 
@@ -136,10 +142,13 @@ impl PrincipledInputs {
         ]
         .map(Input::range);
         let [metallic, transmission, roughness, clearcoat, clearcoat_roughness] = ranges;
+        // All of these look at every texel.
+        let (base_color, specular_color, sheen) = (self.base_color.max(), self.specular_color.max(), self.sheen.max());
+        let (specular, sheen_roughness) = (self.specular.range()[1], self.sheen_roughness.range()[1]);
         let corner = |choice: usize| {
             let of = |range: [f32; 2], bit: usize| range[choice >> bit & 1];
             let parameters = PrincipledParameters {
-                base_color: self.base_color.max(),
+                base_color,
                 metallic: of(metallic, 0),
                 // Counted from the greatest, so that the first corner is the clearest.
                 transmission: of([transmission[1], transmission[0]], 1),
@@ -147,11 +156,11 @@ impl PrincipledInputs {
                 clearcoat: of(clearcoat, 3),
                 clearcoat_roughness: of(clearcoat_roughness, 4),
                 ior: self.ior,
-                specular: self.specular.range()[1],
-                specular_color: self.specular_color.max(),
+                specular,
+                specular_color,
                 solid: self.solid,
-                sheen: self.sheen.max(),
-                sheen_roughness: self.sheen_roughness.range()[1],
+                sheen,
+                sheen_roughness,
             };
             PrincipledBsdf::new(&parameters, self.specular_alpha)
         };
@@ -256,14 +265,31 @@ impl TexturedSurface {
     /// How much of the surface is there at a point, in [0, 1].
     #[must_use]
     pub fn alpha(&self, rays: &RayScene, point: &SurfacePoint) -> f32 {
+        self.alpha_at(|set| rays.uv_set(point, set), || rays.vertex_colour(point).w)
+    }
+
+    /// [`TexturedSurface::alpha`] where there is a place, but no hit.
+    ///
+    /// - `uv`: gives its coordinates in a set.
+    /// - `vertex_alpha`: gives the coverage of the vertices there.
+    pub(crate) fn alpha_at(&self, uv: impl Fn(u32) -> Vec2, vertex_alpha: impl Fn() -> f32) -> f32 {
         let Some(coverage) = &self.inputs.coverage else {
             return 1.0;
         };
-        let mut alpha = coverage.alpha.at(rays, point);
+        let mut alpha = coverage.alpha.at_coordinates(uv);
         if self.inputs.vertex_colours {
-            alpha *= rays.vertex_colour(point).w;
+            alpha *= vertex_alpha();
         }
         coverage.cut(alpha)
+    }
+
+    /// True when nothing of the surface is there anywhere. Cost: a look at every texel.
+    pub(crate) fn is_nowhere(&self) -> bool {
+        let most = |coverage: &Coverage| coverage.cut(coverage.alpha.range()[1]);
+        self.inputs
+            .coverage
+            .as_ref()
+            .is_some_and(|coverage| most(coverage) <= 0.0)
     }
 
     /// True when the surface may be less than whole anywhere.
@@ -271,22 +297,22 @@ impl TexturedSurface {
     pub fn has_alpha(&self) -> bool {
         self.has_alpha
     }
-}
 
-impl SurfaceInputs {
     /// True when nothing changes from point to point, and nothing is missing.
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        let is_constant = match &self.bsdf {
+        let inputs = &self.inputs;
+        let is_constant = match &inputs.bsdf {
             TexturedBsdf::Diffuse(albedo) => albedo.is_constant(),
-            TexturedBsdf::Principled(inputs) => inputs.is_constant(),
+            TexturedBsdf::Principled(layers) => layers.is_constant(),
         };
-        is_constant && self.normal.is_none() && !self.vertex_colours && !self.has_alpha()
+        is_constant && inputs.normal.is_none() && !inputs.vertex_colours && !self.has_alpha
     }
+}
 
-    /// True when the surface may be less than whole anywhere.
-    #[must_use]
-    pub fn has_alpha(&self) -> bool {
+impl SurfaceInputs {
+    /// True when the surface may be less than whole anywhere. Cost: a look at every texel.
+    fn has_alpha(&self) -> bool {
         let least = |coverage: &Coverage| coverage.cut(coverage.alpha.range()[0]);
         let coverage = self.coverage.as_ref();
         coverage.is_some_and(|coverage| self.vertex_colours || least(coverage) < 1.0)

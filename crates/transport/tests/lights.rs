@@ -28,10 +28,7 @@ fn spot(inner: f32, outer: f32) -> LightSource {
     LightSource::Spot {
         frame: frame(Vec3::new(0.0, 2.0, 0.0), down()),
         intensity: Rgb::new(1.0, 2.0, 3.0),
-        cone: SpotCone {
-            cos_inner: math::cos(inner.to_radians()),
-            cos_outer: math::cos(outer.to_radians()),
-        },
+        cone: SpotCone::from_half_angles(inner.to_radians(), outer.to_radians()),
     }
 }
 
@@ -70,6 +67,29 @@ fn a_spot_fades_by_a_smoothstep_in_the_cosine() {
             let expected = irradiance * intensity * 0.5 / PI;
             assert!((channel - expected).abs() < 2e-4, "{degrees}: {channel} {expected}");
         }
+    }
+}
+
+#[test]
+fn a_spot_may_be_as_narrow_as_a_laser() {
+    for outer in [0.01_f32, 0.03, 0.3] {
+        // Others, so that the tree has to choose.
+        let scene = scene(&[plane(0.5)], vec![spot(0.5 * outer, outer), spot(0.5 * outer, outer)]);
+        let radians = f64::from(outer).to_radians();
+        // π I ((1 − cos inner) + (1 − cos outer)), of both.
+        let power = 2.0 * 2.0 * PI * 0.5 * radians * radians * 1.25;
+        close(scene.lights.power(), power, 1e-3);
+        // In the middle of the ramp by the cosine, where a smoothstep is one half.
+        let x = 2.0 * (0.5 * (1.0 + 0.25_f32)).sqrt() * outer.to_radians();
+        let seen = colour(&scene, look_at_floor(x), 256)[0];
+        close(seen, 2.0 * 0.5 / 4.0 * 0.5 / PI, 0.02);
+        // All photons are found within the cone.
+        let sampler = EmissionSampler::uniform(&scene.lights);
+        let flux: f64 = (0..4096)
+            .filter_map(|i| sampler.emit(&SampleStream::new(0, PHOTON_STAGE, 0, i)))
+            .map(|photon| f64::from(photon.flux.mean()))
+            .sum();
+        close(flux / 4096.0, power, 0.02);
     }
 }
 

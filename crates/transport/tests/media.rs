@@ -4,10 +4,13 @@ mod common;
 
 use common::{at, black, colour, diffuse, scene};
 use glam::{DAffine3, Vec2, Vec3};
-use radiometry::Rgb;
+use radiometry::{Rgb, SampleStream};
 use scattering::{Bsdf, DielectricBsdf, Dispersion, Microsurface};
 use spatial::{Ray, Shape};
-use transport::{Environment, LightSource, Material, Scene};
+use transport::{
+    Coverage, EmissionSampler, Environment, Input, LightSource, MapKind, MapKinds, Material, PHOTON_STAGE, PathMedium,
+    PrincipledInputs, Scene, SurfaceInputs, TexturedBsdf, trace_photon,
+};
 
 fn clear(ior: f32, absorption: f32, priority: i8) -> Material {
     Material {
@@ -196,4 +199,105 @@ fn dispersive_glass_is_white_in_a_white_furnace_and_colours_an_edge() {
     assert!(red > green + 0.05 && green > blue + 0.05, "{red} {green} {blue}");
     let [red, _, blue] = spread(prism(None));
     assert!((red - blue).abs() < 1e-6);
+}
+
+/// A clear solid of index 1, which neither bends nor reflects, of which only a part is there.
+fn pierced(alpha: f32, absorption: f32) -> Material {
+    let number = Input::Constant::<f32>;
+    let inputs = PrincipledInputs {
+        base_color: Input::Constant(Rgb::WHITE),
+        metallic: number(0.0),
+        roughness: number(0.0),
+        specular: number(1.0),
+        specular_color: Input::Constant(Rgb::WHITE),
+        transmission: number(1.0),
+        clearcoat: number(0.0),
+        clearcoat_roughness: number(0.0),
+        sheen: Input::Constant(Rgb::BLACK),
+        sheen_roughness: number(0.0),
+        ior: 1.0,
+        solid: true,
+        specular_alpha: 0.05,
+    };
+    let inputs = SurfaceInputs {
+        bsdf: TexturedBsdf::Principled(Box::new(inputs)),
+        normal: None,
+        coverage: Some(Coverage {
+            alpha: number(alpha),
+            cutoff: None,
+        }),
+        vertex_colours: false,
+    };
+    Material {
+        absorption: Rgb::splat(absorption),
+        ..Material::from_inputs(inputs)
+    }
+}
+
+#[test]
+fn the_inside_of_glass_with_holes_begins_and_ends_at_its_surface() {
+    let (shape, place) = slab(0.0, 1.0);
+    for alpha in [0.0, 0.5, 1.0] {
+        let seen = through(&scene(&[(shape, place, pierced(alpha, 0.7))], white_sky()));
+        let expected = f64::from(radiometry::math::exp(-0.7));
+        assert!((seen - expected).abs() < 1e-4, "{alpha}: {seen}, not {expected}");
+        // A wall in it, lit by a lamp before it.
+        let lamp = LightSource::Area {
+            instance: 2,
+            radiance: Rgb::splat(50.0),
+            texture: None,
+            two_sided: true,
+        };
+        let wall = Shape::Quad { size: Vec2::ONE };
+        let lit = |alpha| {
+            let scene = scene(
+                &[
+                    (shape, place, pierced(alpha, 0.7)),
+                    (wall, at(0.0, 0.0, 0.5), diffuse(0.5)),
+                    (Shape::Disc { radius: 0.4 }, at(0.8, 0.0, -1.0), black()),
+                ],
+                vec![lamp.clone()],
+            );
+            colour(&scene, Ray::new(Vec3::new(0.0, 0.1, -3.0), Vec3::Z), 1 << 15)[1]
+        };
+        let (part, whole) = (lit(alpha), lit(1.0));
+        assert!((part / whole - 1.0).abs() < 0.03, "{alpha}: {part}, not {whole}");
+    }
+}
+
+#[test]
+fn paths_know_what_they_begin_in() {
+    // A wall and a bubble in water, a lamp and the eye between them.
+    let (water, bubble) = (slab(0.0, 4.0), Shape::Sphere { radius: 0.25 });
+    let wall = Shape::Quad { size: Vec2::splat(8.0) };
+    let eye = Vec3::new(0.0, 0.5, 1.0);
+    let scene = scene(
+        &[
+            (water.0, water.1, clear(1.33, 0.4, 0)),
+            (wall, at(0.0, 0.0, 3.0), diffuse(0.5)),
+            (bubble, at(0.0, 0.5, 2.0), clear(1.0, 0.0, 0)),
+        ],
+        vec![common::point_light(Vec3::new(0.0, -0.5, 1.0), Rgb::WHITE)],
+    );
+    let around = |p: Vec3| PathMedium::at(&scene, p, 0.0);
+    assert_eq!(around(Vec3::new(0.0, 0.0, -1.0)), PathMedium::VACUUM);
+    assert_ne!(around(eye), PathMedium::VACUUM);
+    assert_ne!(around(Vec3::new(0.0, 0.5, 2.0)), around(eye));
+    // Photons are absorbed on the way to the wall as shadow rays are.
+    let sampler = EmissionSampler::uniform(&scene.lights);
+    let mut direct = 0;
+    for path in 0..2000 {
+        let stream = SampleStream::new(0, PHOTON_STAGE, 0, path);
+        let Some(emitted) = sampler.emit(&stream) else { continue };
+        let wanted = MapKinds::default().with(MapKind::Direct);
+        trace_photon(&scene, &emitted, wanted, 4, path, &stream, |deposit| {
+            let left = radiometry::math::exp(-0.4 * deposit.position.distance(emitted.ray.origin));
+            assert!((deposit.flux.g / emitted.flux.g - left).abs() < 1e-5);
+            direct += 1;
+        });
+    }
+    assert!(direct > 500, "{direct}");
+    // From water into air, light is reflected in whole beyond 48.8°: at 0.22 of 0.25 from the middle of the bubble.
+    let seen = |x: f32| colour(&scene, Ray::new(eye + Vec3::X * x, Vec3::Z), 4096)[1];
+    assert!(seen(0.22) < 0.3 * seen(0.3), "{} {}", seen(0.22), seen(0.3));
 }

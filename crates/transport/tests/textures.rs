@@ -6,7 +6,7 @@ use radiometry::{Rgb, SampleStream, StageKey};
 use spatial::{Geometry, Instance, Ray, RayScene, TriangleMesh};
 use std::sync::Arc;
 use texture::{Filter, Picture, Texture};
-use transport::{Coverage, Input, LightSource, Material, Scene, SurfaceInputs, TexturedBsdf};
+use transport::{Coverage, EmissionSampler, Input, LightSource, Material, Scene, SurfaceInputs, TexturedBsdf};
 
 /// Four texels, each of its own colour, by the second set of texture coordinates.
 fn four() -> Texture {
@@ -96,4 +96,45 @@ fn inputs_that_are_the_same_everywhere_leave_a_plain_material() {
     assert_eq!(normal, point.ns);
     assert_eq!(scene.alpha(&point), 0.5);
     assert!(scene.has_alpha());
+}
+
+/// A lamp of which a part is there lights as much as rays that meet it say, whether sampled or by photons.
+#[test]
+fn a_lamp_that_is_not_whole_sends_less_light() {
+    let light = || LightSource::Area {
+        instance: 0,
+        radiance: Rgb::splat(2.0),
+        texture: None,
+        two_sided: true,
+    };
+    let lamp = |alpha: f32, vertex_colours: bool| {
+        let inputs = SurfaceInputs {
+            bsdf: TexturedBsdf::Diffuse(Input::Constant(Rgb::BLACK)),
+            normal: None,
+            coverage: Some(Coverage {
+                alpha: Input::Constant(alpha),
+                cutoff: None,
+            }),
+            vertex_colours,
+        };
+        scene(Material::from_inputs(inputs), vec![light()])
+    };
+    let whole = scene(Material::default(), vec![light()]);
+    // The vertices of the square are half there.
+    for (alpha, vertex_colours, expected) in [(0.5, false, 0.5), (0.5, true, 0.25), (1.0, true, 0.5)] {
+        let part = lamp(alpha, vertex_colours);
+        assert!((part.lights.power() / whole.lights.power() - f64::from(expected)).abs() < 1e-6);
+        let stream = SampleStream::new(0, StageKey::new("textures"), 0, 1);
+        let from = Vec3::new(0.2, 0.3, 1.5);
+        let (u, v) = (stream.draw_2d(0, 0), stream.draw_2d(0, 1));
+        let sampled = part.lights.sample(from, 0.0, u, v).unwrap();
+        assert!((sampled.radiance.r - 2.0 * expected).abs() < 1e-6);
+        // Rays that meet it are thinned on their way.
+        let ray = Ray::new(from, sampled.wi);
+        let point = part.rays.surface(&ray, &part.rays.intersect(&ray).unwrap());
+        assert_eq!(part.lights.emitted(&point, -sampled.wi), Rgb::splat(2.0));
+        let photon = EmissionSampler::uniform(&part.lights).emit(&stream).unwrap();
+        assert!((photon.flux.mean() / part.lights.power() as f32 - 1.0).abs() < 1e-5);
+    }
+    assert!(lamp(0.0, false).lights.is_empty());
 }

@@ -127,7 +127,7 @@ pub struct Dielectric {
     pub absorption: Vec3,
     /// Abbe number, how little the index depends on the colour: crown glass 59, flint 36, diamond 55, water 56. Low spreads
     /// colours more. Light keeps a single wavelength from the first such surface on, so the picture takes more samples.
-    #[reflect(@Range::above(0.0))]
+    #[reflect(@Range::closed(5.0, 200.0))]
     pub dispersion: Option<f32>,
     /// A pane: both of its surfaces in one, too close together to bend light. Smooth only.
     pub thin: bool,

@@ -152,8 +152,15 @@ fn numbers_out_of_range_are_refused() {
         "Render: (camera: \"/Scene\", samples: 0)",
         "Render: (camera: \"/Scene\", samples: 4000000000)",
         "LightTransport: (specular_alpha: 2)",
+        "SpotLight: (outer_angle: 0.0099)",
+        "Dielectric: (dispersion: 1)",
+        "Dielectric: (dispersion: 1e5)",
     ] {
         assert!(refusal(bad).contains("error[out-of-range]"), "{bad}: {}", refusal(bad));
+    }
+    // The bounds themselves, also where single precision has no such number.
+    for good in ["SpotLight: (outer_angle: 0.01)", "Dielectric: (dispersion: 5)"] {
+        assert_eq!(refusal(good), "no error", "{good}");
     }
 }
 

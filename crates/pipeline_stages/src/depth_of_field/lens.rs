@@ -23,12 +23,13 @@ impl ThinLens {
     /// - `u`: in [0, 1)².
     pub(super) fn bend(&self, ray: &Ray, frame: &Affine3A, u: Vec2) -> Ray {
         let view = -Vec3::from(frame.matrix3.z_axis);
-        let focus = ray.direction * (self.focus_distance / ray.direction.dot(view));
+        // Per metre of the way to the plane of focus, which may be as far off as numbers go.
+        let nearness = ray.direction.dot(view) / self.focus_distance;
         let place = self.sample(u) * self.radius;
         let offset = Vec3::from(frame.matrix3.x_axis) * place.x + Vec3::from(frame.matrix3.y_axis) * place.y;
         Ray {
             origin: ray.origin + offset,
-            direction: (focus - offset).normalize(),
+            direction: (ray.direction - offset * nearness).normalize(),
             ..*ray
         }
     }
@@ -80,6 +81,18 @@ mod tests {
             assert!((bent.origin - ray.origin).length() <= 0.1001);
             assert!((bent.origin - ray.origin).dot(view).abs() < 1e-6);
         }
+    }
+
+    #[test]
+    fn a_lens_may_be_focused_on_infinity() {
+        let lens = ThinLens {
+            radius: 0.1,
+            focus_distance: 1e20,
+            blades: 0,
+        };
+        let ray = Ray::new(Vec3::ZERO, Vec3::new(0.6, 0.0, -0.8));
+        let bent = lens.bend(&ray, &Affine3A::IDENTITY, numbers(0));
+        assert!((bent.direction - ray.direction).length() < 1e-6, "{}", bent.direction);
     }
 
     #[test]

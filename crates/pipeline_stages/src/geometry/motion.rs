@@ -1,6 +1,7 @@
 //! Where prims are while the shutter is open: transforms at as many times as it takes for straight lines between them.
 
 use super::placement::{PlacementError, place};
+use bevy_reflect::PartialReflect;
 use glam::{DAffine3, DVec3};
 use pipeline_data::ShutterInterval;
 use pipeline_data::vocabulary::{LookAt, Transform};
@@ -12,6 +13,8 @@ use std::collections::BTreeMap;
 const MOST_INTERVALS: usize = 128;
 /// Most keys of all prims together; where very many move, each has fewer.
 const MOST_KEYS: usize = 1 << 22;
+/// Where an interval is looked at beside its middle: a share that no period of a motion has with that.
+const SECOND_PROBE: f64 = 0.381_966_011_250_105;
 /// How far a place in a prim may be off the way it really takes, as a share of its distance from the prim's origin, and
 /// of the way itself.
 const TOLERANCE: f64 = 1e-4;
@@ -84,12 +87,21 @@ fn changes(scene: &Scene, row: u32) -> bool {
 impl Clock<'_> {
     /// The world at evenly spaced times, halved until all ways are straight between them.
     fn worlds(&mut self, most: usize) -> Vec<Worlds> {
-        let mut times = vec![self.at(0.0), self.at(1.0)];
+        let first = self.first_intervals().min(1 << most.ilog2());
+        let mut times: Vec<Worlds> = (0..=first).map(|i| self.at(i as f64 / first as f64)).collect();
         while self.errors.is_empty() {
             let intervals = times.len() - 1;
-            let middle = |i: usize| (i as f64 + 0.5) / intervals as f64;
-            let between: Vec<Worlds> = (0..intervals).map(|i| self.at(middle(i))).collect();
-            let straight = (0..intervals).all(|i| is_straight(&times[i], &between[i], &times[i + 1]));
+            let within = |i: usize, share: f64| (i as f64 + share) / intervals as f64;
+            let between: Vec<Worlds> = (0..intervals).map(|i| self.at(within(i, 0.5))).collect();
+            let straight = (0..intervals).all(|i| is_straight(&times[i], &between[i], &times[i + 1], 0.5))
+                && (0..intervals).all(|i| {
+                    is_straight(
+                        &times[i],
+                        &self.at(within(i, SECOND_PROBE)),
+                        &times[i + 1],
+                        SECOND_PROBE,
+                    )
+                });
             if straight || 2 * intervals > most {
                 break;
             }
@@ -101,6 +113,41 @@ impl Clock<'_> {
             times = all;
         }
         times
+    }
+
+    /// A power of two of intervals, none longer than the time between two samples that the scene gives, or than a
+    /// quarter of a turn takes.
+    fn first_intervals(&self) -> usize {
+        let (open, close) = (self.shutter.open, self.shutter.close);
+        let mut least = 1.0_f64;
+        for row in &self.moving {
+            for component in ["Transform", "LookAt"] {
+                let Some(found) = self.scene.prims[*row as usize].component(component) else {
+                    continue;
+                };
+                for field in &found.fields {
+                    let Some(samples) = field.samples() else { continue };
+                    let mut degrees = 0.0;
+                    for pair in samples.windows(2) {
+                        let [(start, before), (end, after)] = pair else {
+                            continue;
+                        };
+                        let shared = end.min(close) - start.max(open);
+                        if shared <= 0.0 {
+                            continue;
+                        }
+                        least = least.max((close - open) / (end - start));
+                        let angles = |value: &dyn PartialReflect| value.try_downcast_ref::<DVec3>().copied();
+                        if let ("rotate", Some(before), Some(after)) = (field.name, angles(&**before), angles(&**after))
+                        {
+                            degrees += (after - before).abs().max_element() * shared / (end - start);
+                        }
+                    }
+                    least = least.max(degrees / 90.0);
+                }
+            }
+        }
+        (least.min(MOST_INTERVALS as f64).ceil() as usize).next_power_of_two()
     }
 
     /// - `share`: of the time that the shutter is open.
@@ -159,12 +206,13 @@ fn without_needless(keys: Vec<DAffine3>) -> Vec<DAffine3> {
     }
 }
 
-fn is_straight(before: &Worlds, between: &Worlds, after: &Worlds) -> bool {
+/// - `share`: of the way at which `between` is.
+fn is_straight(before: &Worlds, between: &Worlds, after: &Worlds, share: f64) -> bool {
     between
         .iter()
         .all(|(row, exact)| match (before.get(row), after.get(row)) {
             (Some(before), Some(after)) => {
-                deviates(&straight_between(before, after, 0.5), exact, before, after) <= TOLERANCE
+                deviates(&straight_between(before, after, share), exact, before, after) <= TOLERANCE
             }
             _ => true,
         })

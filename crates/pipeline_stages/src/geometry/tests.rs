@@ -3,7 +3,7 @@ use bevy_app::App;
 use glam::{DAffine3, DVec3, Vec3};
 use pipeline_core::{CorePlugin, Load, Prepare, Report};
 use pipeline_data::{
-    ComposedScene, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, TransportScene, WorldTransform,
+    ComposedScene, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, TransportScene, WorldMotion, WorldTransform,
 };
 use spatial::Ray;
 
@@ -11,11 +11,16 @@ const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 1 0 0\nf 1//1 2//1 3/
 
 /// Prepares a scene with these prims, a lamp and a camera.
 fn prepare(prims: &str) -> App {
+    prepare_seen_by("", prims)
+}
+
+/// - `eye`: components beside that of the camera.
+fn prepare_seen_by(eye: &str, prims: &str) -> App {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("scene.ron");
     let text = format!(
         "Layer(prims: {{\n{prims}\n\
-         \"/Sky\": Def(EnvironmentLight: ()), \"/Camera\": Def(Camera: ()),\n\
+         \"/Sky\": Def(EnvironmentLight: ()), \"/Camera\": Def(Camera: (){eye}),\n\
          \"/Render\": Def(Render: (camera: \"/Camera\"), Film: (resolution: (4, 4)))}})"
     );
     std::fs::write(&scene, text).unwrap();
@@ -296,4 +301,21 @@ fn a_prim_has_one_geometry() {
         "{text}"
     );
     assert!(text.contains("scene.ron:4:") && text.contains("scene.ron:3:"), "{text}");
+}
+
+#[test]
+fn whole_turns_while_the_shutter_is_open_are_seen() {
+    let keys = |samples: &str| {
+        let moving = format!("\"/A\": Def(Sphere: (), Transform: (rotate: Samples({{{samples}}}))),");
+        let mut app = prepare_seen_by(", MotionBlur: (shutter: (0, 1))", &moving);
+        assert_eq!(errors(&app), "");
+        let world = app.world_mut();
+        let mut motions = world.query::<&WorldMotion>();
+        motions.single(world).unwrap().0.len()
+    };
+    let almost = keys("0: (0, 0, 0), 1: (0, 719, 0)");
+    assert!(almost > 100, "{almost}");
+    assert_eq!(keys("0: (0, 0, 0), 1: (0, 720, 0)"), almost);
+    // There and back within a sixteenth of the time, and still before and after.
+    assert!(keys("0.4: (0, 0, 0), 0.43: (0, 10, 0), 0.46: (0, 0, 0)") > 30);
 }

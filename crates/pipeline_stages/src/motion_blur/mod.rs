@@ -8,7 +8,8 @@
 //! Transforms, cameras, lights and emitters move, by samples over time of `Transform` and `LookAt`. Everything that a path
 //! meets is met at the time of its camera ray; photons have times of their own.
 //!
-//! Limits: other fields than those of `Transform` and `LookAt` stay as at the frame. A photon map does not know times: on
+//! Limits: other fields than those of `Transform` and `LookAt` stay as at the frame, and so does an `EnvironmentLight`
+//! (with a warning where it turns). A photon map does not know times: on
 //! a surface that moves, it is blurred as over one that stands still.
 
 mod open;

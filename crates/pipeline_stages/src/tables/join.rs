@@ -50,14 +50,11 @@ fn warn_of_unreachable_caustics(
     else {
         return;
     };
-    let is_delta = |row: &u32| {
-        let bsdf = &table.materials[*row as usize].bsdf;
-        bsdf.has_specular() && !bsdf.needs_light_sampling()
-    };
+    let is_delta = |row: &u32| table.materials[*row as usize].has_delta();
     if table.of_instance.iter().any(is_delta) {
         let finding = Diagnostic::warning(
             "unreachable-caustics",
-            "`caustic: Trace` cannot find the light of a point behind mirrors or glass",
+            "`caustic: Trace` cannot find the light of a point behind mirrors, clear glass or smooth coats",
         )
         .also(light, "the light without an extent")
         .note("use `caustic: PhotonMap`, or give it one: a small `Sphere` with `Emission`, an `angle` above 0");

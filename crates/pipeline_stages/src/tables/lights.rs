@@ -10,12 +10,11 @@ use pipeline_data::vocabulary::{
 use pipeline_data::{
     Acceleration, EnvironmentMaps, InstancePrims, PrimIndex, RenderRequest, SceneOrigin, WorldMotion, WorldTransform,
 };
-use radiometry::{Rgb, math};
+use radiometry::Rgb;
 use scene_format::{Diagnostic, Place, Scene};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::sync::Arc;
-use transport::{Environment, Input, LightSource, MovingFrame, SpotCone};
+use transport::{Environment, LightSource, MovingFrame, SpotCone};
 
 /// All lights that shine, in the order of the scene. On its way to `join_tables`.
 #[derive(Resource, Default)]
@@ -102,7 +101,7 @@ pub(super) fn list_lights(
             collector.add_distant(prim, distant, world, motion);
         }
         if let Some(environment) = environment {
-            collector.add_environment(prim, environment, world);
+            collector.add_environment(prim, environment, world, motion);
         }
     }
     for (instance, glow) in (0..).zip(&materials.glow_of_instance) {
@@ -182,14 +181,11 @@ impl Collector<'_> {
             self.dark.get_or_insert((glow.material, "Principled"));
             return;
         }
-        let radiance = glow.radiance.mean();
+        let radiance = glow.radiance;
         let source = LightSource::Area {
             instance,
             radiance,
-            texture: match &glow.radiance {
-                Input::Texture(texture) => Some(Arc::new((**texture).clone())),
-                Input::Constant(_) => None,
-            },
+            texture: glow.texture.clone(),
             two_sided: false,
         };
         self.add(glow.material, "Principled", radiance, source);
@@ -236,15 +232,10 @@ impl Collector<'_> {
             self.findings.push_at(place, Diagnostic::error("out-of-range", message));
             return;
         }
-        let cosine = |degrees: f32| math::cos(degrees.to_radians());
-        let cone = SpotCone {
-            cos_inner: cosine(light.inner_angle),
-            cos_outer: cosine(light.outer_angle),
-        };
+        let cone = SpotCone::from_half_angles(light.inner_angle.to_radians(), light.outer_angle.to_radians());
         let intensity: Rgb = match light.intensity {
             Some(intensity) => intensity.into(),
-            // Φ = π I (2 − cos inner − cos outer).
-            None => Rgb::from(light.power) * (1.0 / (PI * f64::from(2.0 - cone.cos_inner - cone.cos_outer))) as f32,
+            None => Rgb::from(light.power) * (1.0 / cone.solid_angle()),
         };
         let Some(frame) = self.frame(prim, world, motion) else {
             return;
@@ -278,7 +269,13 @@ impl Collector<'_> {
         self.add(prim, "DistantLight", irradiance, source);
     }
 
-    fn add_environment(&mut self, prim: u32, light: &EnvironmentLight, world: &WorldTransform) {
+    fn add_environment(
+        &mut self,
+        prim: u32,
+        light: &EnvironmentLight,
+        world: &WorldTransform,
+        motion: Option<&WorldMotion>,
+    ) {
         let place = component_place(self.scene, prim, "EnvironmentLight");
         if let Some(first) = self.environment {
             let message = format!(
@@ -299,6 +296,15 @@ impl Collector<'_> {
         if light.file.is_some() && map.is_none() {
             // It could not be read, which was reported.
             return;
+        }
+        let turns = |keys: &WorldMotion| keys.0.windows(2).any(|pair| pair[0].matrix3 != pair[1].matrix3);
+        if map.is_some() && motion.is_some_and(turns) {
+            let message = format!(
+                "the environment of `{}` is not blurred by its rotation",
+                self.path(prim)
+            );
+            let finding = Diagnostic::warning("without-effect", message).note("it stands as at the frame");
+            self.findings.push_at(place, finding);
         }
         let radiance = match &map {
             Some(_) => Rgb::splat(light.scale),

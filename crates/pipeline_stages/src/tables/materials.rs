@@ -10,6 +10,8 @@ use pipeline_data::{InstancePrims, MeshStore, PrimIndex, RenderSettings, Texture
 use radiometry::Rgb;
 use scene_format::{Diagnostic, Scene};
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use texture::Texture;
 use transport::{Input, Material, SurfaceInputs, TexturedBsdf};
 
 /// Names of the material components, for messages.
@@ -27,8 +29,10 @@ pub(super) struct MaterialTable {
 /// Light of a material.
 #[derive(Clone)]
 pub(super) struct Glow {
-    /// W·m⁻²·sr⁻¹.
-    pub(super) radiance: Input<Rgb>,
+    /// W·m⁻²·sr⁻¹; of a texture the mean.
+    pub(super) radiance: Rgb,
+    /// Shared by all instances.
+    pub(super) texture: Option<Arc<Texture>>,
     /// The prim with the material.
     pub(super) material: u32,
 }
@@ -197,6 +201,13 @@ impl Rows<'_> {
                 continue;
             };
             row.needs_inside = material.has_inside();
+            if row.needs_inside && material.has_alpha() {
+                let message = format!("the glass of `{}` has holes: `alpha` is below 1", self.path(prim));
+                let place = field_place(self.scene, prim, fields.component, &["alpha", "alpha_texture"]);
+                let finding = Diagnostic::warning("alpha-in-glass", message)
+                    .note("what is behind a hole is still its inside, and absorbs; `transmission` makes it clear");
+                findings.push_at(place, finding);
+            }
             row.row = self.add(material);
             self.of_prim.insert(prim, row);
         }
@@ -391,9 +402,19 @@ fn has_colours(parts: &GeometryComponentsItem<'_, '_>, store: &MeshStore) -> boo
 }
 
 impl Glow {
-    /// None for a material that is dark everywhere.
+    /// None for a material that is dark everywhere. Cost: a look at every texel.
     fn of(radiance: Input<Rgb>, material: u32) -> Option<Self> {
-        (!radiance.max().is_black()).then_some(Self { radiance, material })
+        if radiance.max().is_black() {
+            return None;
+        }
+        Some(Self {
+            radiance: radiance.mean(),
+            texture: match radiance {
+                Input::Texture(texture) => Some(Arc::from(texture)),
+                Input::Constant(_) => None,
+            },
+            material,
+        })
     }
 }
 

@@ -199,6 +199,10 @@ impl PrincipledBsdf {
         (self.has_matt() && class == LobeClass::Diffuse) || self.surfaces().any(|surface| surface.class() == class)
     }
 
+    pub(crate) fn has_delta(&self) -> bool {
+        self.surfaces().any(Microsurface::is_smooth)
+    }
+
     pub(crate) fn needs_light_sampling(&self) -> bool {
         self.has_matt() || self.surfaces().any(|surface| !surface.is_smooth())
     }

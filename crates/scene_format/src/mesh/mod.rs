@@ -65,7 +65,7 @@ pub fn load_obj(path: &Path, limits: &MeshLimits) -> Result<MeshData, MeshError>
     let mut bytes = Vec::new();
     File::open(path)
         .map_err(unreadable)?
-        .take(limits.bytes + 1)
+        .take(limits.bytes.saturating_add(1))
         .read_to_end(&mut bytes)
         .map_err(unreadable)?;
     parse_obj(&file, &bytes, limits)

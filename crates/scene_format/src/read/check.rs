@@ -2,6 +2,7 @@
 
 use bevy_reflect::{PartialReflect, ReflectRef};
 
+use crate::attributes::Range;
 use crate::options::Limits;
 use crate::schema::FieldInfo;
 
@@ -14,10 +15,11 @@ pub(super) struct Problem {
 /// Checks a value of a field with everything in it.
 pub(super) fn check(value: &dyn PartialReflect, field: &FieldInfo, limits: &Limits) -> Result<(), Problem> {
     if let Some(&number) = value.try_downcast_ref::<f32>() {
-        return check_number(f64::from(number), field, ", at most 3.4e38");
+        let range = field.range.map(Range::in_single_precision);
+        return check_number(f64::from(number), range, field, ", at most 3.4e38");
     }
     if let Some(number) = number(value) {
-        return check_number(number, field, "");
+        return check_number(number, field.range, field, "");
     }
     if let Some(text) = value.try_downcast_ref::<String>() {
         return check_text(text);
@@ -47,15 +49,16 @@ pub(super) fn check(value: &dyn PartialReflect, field: &FieldInfo, limits: &Limi
     }
 }
 
-fn check_number(number: f64, field: &FieldInfo, largest: &str) -> Result<(), Problem> {
+/// - `allowed`: the range of the field, in its own precision.
+fn check_number(number: f64, allowed: Option<Range>, field: &FieldInfo, largest: &str) -> Result<(), Problem> {
     if !number.is_finite() {
         return Err(Problem {
             code: "not-finite",
             message: format!("must be finite{largest}"),
         });
     }
-    match field.range {
-        Some(range) if !range.contains(number) => {
+    match (field.range, allowed) {
+        (Some(range), Some(allowed)) if !allowed.contains(number) => {
             let unit = field.unit.map_or(String::new(), |unit| format!(" {unit}"));
             Err(Problem {
                 code: "out-of-range",

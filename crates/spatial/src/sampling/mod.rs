@@ -19,7 +19,7 @@ use crate::shapes::Solid;
 use crate::surface::{WorldTriangle, unit};
 use crate::{Bounds, RayScene, SurfacePoint};
 use cone::Ball;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 use radiometry::warp;
 use rectangle::Rectangle;
 use std::sync::Arc;
@@ -356,6 +356,20 @@ impl SurfaceSampler {
                     .unwrap_or(uv)
             }
             _ => uv,
+        }
+    }
+
+    /// Colour and coverage of the vertices at a point of this surface; one where the geometry has none.
+    ///
+    /// - `primitive`, `p`: of a [`SurfaceSample`] or a [`SurfacePoint`].
+    #[must_use]
+    pub fn vertex_colour(&self, primitive: u32, p: Vec3, time: f32) -> Vec4 {
+        match &self.surface {
+            Surface::Triangles(triangles) => {
+                let shape = triangles.world(&self.instance.at(time), primitive);
+                triangles.vertex_colour(primitive, shape.weights(p.as_dvec3()))
+            }
+            Surface::Solid { .. } => Vec4::ONE,
         }
     }
 

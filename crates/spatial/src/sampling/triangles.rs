@@ -5,7 +5,7 @@ use crate::TriangleMesh;
 use crate::attributes::blend;
 use crate::placed::Pose;
 use crate::surface::{WorldTriangle, mesh_uv};
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DVec2, DVec3, Vec2, Vec4};
 use radiometry::{Distribution, warp};
 use std::sync::Arc;
 
@@ -68,6 +68,14 @@ impl Triangles {
     /// - `weights`: of the second and third vertex.
     pub(super) fn uv_set(&self, triangle: u32, weights: Vec2, set: u32) -> Option<Vec2> {
         Some(blend(&self.mesh, self.mesh.uv_set(set)?, triangle, weights))
+    }
+
+    /// Colour and coverage of the vertices; one where there are none.
+    ///
+    /// - `weights`: of the second and third vertex.
+    pub(super) fn vertex_colour(&self, triangle: u32, weights: Vec2) -> Vec4 {
+        let colours = self.mesh.colours.as_deref();
+        colours.map_or(Vec4::ONE, |colours| blend(&self.mesh, colours, triangle, weights))
     }
 
     /// Chooses a triangle and the weights of its second and third vertex.

@@ -7,10 +7,12 @@ mod sample;
 mod source;
 mod tree;
 
+use crate::TexturedSurface;
 use crate::scene::bounding_sphere;
 use glam::{Vec2, Vec3};
 use radiometry::{Distribution, Rgb};
 use spatial::{RayScene, SurfacePoint};
+use std::sync::Arc;
 use tree::LightTree;
 
 pub use environment::{Environment, EnvironmentMap};
@@ -42,9 +44,15 @@ pub struct LightTable {
 const NONE: u32 = u32::MAX;
 
 impl LightTable {
-    /// Builds the table. Lights without power (black, or without area) are left out.
+    /// Builds the table. Lights without power (black, without area, or with nothing there) are left out.
+    ///
+    /// - `coverage`: of an instance that is not whole.
     #[must_use]
-    pub fn new(rays: &RayScene, sources: Vec<LightSource>) -> Self {
+    pub(crate) fn new(
+        rays: &RayScene,
+        sources: Vec<LightSource>,
+        coverage: impl Fn(u32) -> Option<Arc<TexturedSurface>>,
+    ) -> Self {
         let mut table = Self {
             lights: Vec::new(),
             choice: Distribution::default(),
@@ -62,7 +70,7 @@ impl LightTable {
                 LightSource::Area { instance, .. } => Some(*instance),
                 _ => None,
             };
-            let Some(light) = Light::prepare(rays, source) else {
+            let Some(light) = Light::prepare(rays, source, &coverage) else {
                 continue;
             };
             let power = light.power(table.radius());

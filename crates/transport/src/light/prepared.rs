@@ -2,9 +2,10 @@ use super::distant::DistantDisc;
 use super::sample::{LightSample, Target};
 use super::tree::{Facing, LightBounds};
 use super::{Environment, LightSource, SpotCone};
+use crate::TexturedSurface;
 use crate::frame::MovingFrame;
 use glam::{Vec2, Vec3};
-use radiometry::Rgb;
+use radiometry::{Rgb, SampleStream, StageKey};
 use spatial::{RayScene, SurfaceSampler};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -15,9 +16,65 @@ pub(crate) struct SurfaceRadiance {
     /// W·m⁻²·sr⁻¹; of a texture the mean.
     pub(crate) mean: Rgb,
     texture: Option<Arc<Texture>>,
+    /// A surface that is not whole, of which only what is there shines. Rays that meet it are thinned already, so only
+    /// points that are sampled ask.
+    coverage: Option<Arc<TexturedSurface>>,
+    /// How much of the surface is there on average, in [0, 1].
+    mean_coverage: f32,
 }
 
 impl SurfaceRadiance {
+    /// Points that are asked how much of the surface is there.
+    const PROBES: u32 = 256;
+
+    fn new(
+        sampler: &SurfaceSampler,
+        mean: Rgb,
+        texture: Option<Arc<Texture>>,
+        coverage: Option<Arc<TexturedSurface>>,
+    ) -> Self {
+        let mut shine = Self {
+            mean,
+            texture,
+            coverage,
+            mean_coverage: 1.0,
+        };
+        let Some(coverage) = &shine.coverage else { return shine };
+        shine.mean_coverage = if coverage.is_nowhere() {
+            0.0
+        } else {
+            let probe = |i: u32| {
+                let u = SampleStream::new(0, StageKey::new("coverage"), 0, i).draw_2d(0, 0);
+                let on = sampler.sample_area(u, 0.0);
+                shine.coverage_at(sampler, on.primitive, on.p, on.uv, 0.0)
+            };
+            let mean = (0..Self::PROBES).map(probe).sum::<f32>() / Self::PROBES as f32;
+            // What no probe met may be there all the same.
+            mean.max(1.0 / Self::PROBES as f32)
+        };
+        shine
+    }
+
+    /// Mean radiance of the whole surface, holes included, W·m⁻²·sr⁻¹.
+    pub(crate) fn mean_sent(&self) -> Rgb {
+        self.mean * self.mean_coverage
+    }
+
+    /// How much of the surface is there at a point, in [0, 1].
+    #[inline]
+    fn coverage_at(&self, sampler: &SurfaceSampler, primitive: u32, p: Vec3, uv: Vec2, time: f32) -> f32 {
+        self.coverage.as_ref().map_or(1.0, |surface| {
+            let vertex_alpha = || sampler.vertex_colour(primitive, p, time).w;
+            surface.alpha_at(|set| sampler.uv_set(primitive, p, uv, time, set), vertex_alpha)
+        })
+    }
+
+    /// [`SurfaceRadiance::at`] a point that was sampled: what is not there sends nothing.
+    #[inline]
+    pub(crate) fn sent_at(&self, sampler: &SurfaceSampler, primitive: u32, p: Vec3, uv: Vec2, time: f32) -> Rgb {
+        self.at(sampler, primitive, p, uv, time) * self.coverage_at(sampler, primitive, p, uv, time)
+    }
+
     /// Radiance of a point of the surface that `sampler` samples, W·m⁻²·sr⁻¹.
     ///
     /// - `primitive`, `p`, `uv`: of the point.
@@ -52,7 +109,13 @@ pub(crate) enum Light {
 
 impl Light {
     /// `None` for a surface without area.
-    pub(super) fn prepare(rays: &RayScene, source: LightSource) -> Option<Self> {
+    ///
+    /// - `coverage`: of an instance that is not whole.
+    pub(super) fn prepare(
+        rays: &RayScene,
+        source: LightSource,
+        coverage: impl Fn(u32) -> Option<Arc<TexturedSurface>>,
+    ) -> Option<Self> {
         Some(match source {
             LightSource::Point { frame, intensity } => Self::Point { frame, intensity },
             LightSource::Spot { frame, intensity, cone } => Self::Spot { frame, intensity, cone },
@@ -61,14 +124,14 @@ impl Light {
                 radiance,
                 texture,
                 two_sided,
-            } => Self::Area {
-                sampler: Box::new(SurfaceSampler::new(rays, instance)?),
-                shine: SurfaceRadiance {
-                    mean: radiance,
-                    texture,
-                },
-                two_sided,
-            },
+            } => {
+                let sampler = Box::new(SurfaceSampler::new(rays, instance)?);
+                Self::Area {
+                    shine: SurfaceRadiance::new(&sampler, radiance, texture, coverage(instance)),
+                    sampler,
+                    two_sided,
+                }
+            }
             LightSource::Distant {
                 frame,
                 irradiance,
@@ -87,9 +150,7 @@ impl Light {
         let disc = PI * radius * radius;
         match self {
             Self::Point { intensity, .. } => 4.0 * PI * f64::from(intensity.mean()),
-            Self::Spot { intensity, cone, .. } => {
-                PI * f64::from(intensity.mean() * (2.0 - cone.cos_inner - cone.cos_outer))
-            }
+            Self::Spot { intensity, cone, .. } => f64::from(intensity.mean() * cone.solid_angle()),
             Self::Area { sampler, .. } => self.power_of_area(sampler.area()),
             Self::Distant(light) if light.is_point() => disc * f64::from(light.radiance.mean()),
             Self::Distant(light) => disc * f64::from(light.radiance.mean() / light.pdf()),
@@ -101,7 +162,7 @@ impl Light {
     fn power_of_area(&self, area: f64) -> f64 {
         match self {
             Self::Area { shine, two_sided, .. } => {
-                PI * area * if *two_sided { 2.0 } else { 1.0 } * f64::from(shine.mean.mean())
+                PI * area * if *two_sided { 2.0 } else { 1.0 } * f64::from(shine.mean_sent().mean())
             }
             _ => 0.0,
         }
@@ -144,7 +205,8 @@ impl Light {
                     Facing {
                         axis: -frame.back(0.0),
                         cos_spread: 1.0,
-                        cos_emission: cone.cos_outer,
+                        // Rounding must not hide the light from where a narrow cone reaches.
+                        cos_emission: 1.0 - cone.one_minus_cos() - 1e-6,
                         two_sided: false,
                     }
                 },
@@ -193,7 +255,7 @@ impl Light {
             Self::Spot { frame, intensity, cone } => {
                 let axis = frame.back(time);
                 LightSample::of_point(from, frame.position(time), probability, |wi| {
-                    *intensity * cone.falloff(wi.dot(axis))
+                    *intensity * cone.falloff(wi, axis)
                 })
             }
             Self::Area {
@@ -207,7 +269,7 @@ impl Light {
                 let finite = sampled.pdf > 0.0 && sampled.pdf.is_finite();
                 (shines && finite).then_some(LightSample {
                     wi: sampled.wi,
-                    radiance: shine.at(sampler, on.primitive, on.p, on.uv, time),
+                    radiance: shine.sent_at(sampler, on.primitive, on.p, on.uv, time),
                     pdf: probability * sampled.pdf,
                     delta: false,
                     target: Target::Point {

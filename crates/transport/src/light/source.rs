@@ -1,6 +1,7 @@
 use super::Environment;
 use crate::frame::MovingFrame;
-use radiometry::Rgb;
+use glam::Vec3;
+use radiometry::{Rgb, math};
 use std::sync::Arc;
 use texture::Texture;
 
@@ -48,31 +49,52 @@ pub enum LightSource {
 }
 
 /// How a spot light fades towards the edge of its cone: a smoothstep in the cosine of the angle to the axis.
+///
+/// Kept as 1 − cos, since below a degree cosines in single precision have few digits left, and below 0.02° none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotCone {
-    /// Cosine of the half-angle within which it shines with full intensity.
-    pub cos_inner: f32,
-    /// Cosine of the half-angle beyond which it is dark, at most `cos_inner`.
-    pub cos_outer: f32,
+    /// 1 − cos of the half-angle within which it shines with full intensity.
+    one_minus_cos_inner: f32,
+    /// 1 − cos of the half-angle beyond which it is dark, at least that of the inner.
+    one_minus_cos_outer: f32,
 }
 
 impl SpotCone {
-    /// Share of the intensity on the axis that is sent at an angle, in [0, 1].
+    /// - `inner`, `outer`: half-angles in radians, 0 ≤ `inner` ≤ `outer` ≤ π.
+    #[must_use]
+    pub fn from_half_angles(inner: f32, outer: f32) -> Self {
+        // 1 − cos θ = 2 sin²(θ/2).
+        let one_minus_cos = |angle: f32| 2.0 * math::sin(0.5 * angle) * math::sin(0.5 * angle);
+        Self {
+            one_minus_cos_inner: one_minus_cos(inner),
+            one_minus_cos_outer: one_minus_cos(outer),
+        }
+    }
+
+    /// Share of the intensity on the axis that is sent in a direction, in [0, 1]. Both are of unit length.
     #[inline]
     #[must_use]
-    pub fn falloff(&self, cos: f32) -> f32 {
-        if cos < self.cos_outer {
+    pub fn falloff(&self, direction: Vec3, axis: Vec3) -> f32 {
+        // 1 − cos of a small angle through its chord: |a − b|² = 2 (1 − cos).
+        let one_minus_cos = 0.5 * (direction - axis).length_squared();
+        if one_minus_cos > self.one_minus_cos_outer {
             return 0.0;
         }
-        if cos >= self.cos_inner {
+        if one_minus_cos <= self.one_minus_cos_inner {
             return 1.0;
         }
-        let t = (cos - self.cos_outer) / (self.cos_inner - self.cos_outer);
+        let t = (self.one_minus_cos_outer - one_minus_cos) / (self.one_minus_cos_outer - self.one_minus_cos_inner);
         t * t * (3.0 - 2.0 * t)
+    }
+
+    /// The solid angle that would hold all of its light at the intensity on the axis, sr: Φ = Ω I.
+    #[must_use]
+    pub fn solid_angle(&self) -> f32 {
+        std::f32::consts::PI * (self.one_minus_cos_inner + self.one_minus_cos_outer)
     }
 
     /// 1 − cos of the outer half-angle.
     pub(crate) fn one_minus_cos(&self) -> f32 {
-        1.0 - self.cos_outer
+        self.one_minus_cos_outer
     }
 }

@@ -1,4 +1,4 @@
-use super::{BALL, CAMERA, RENDER, SKY, errors, prepare, refusal, seen_at, warnings, with_rest};
+use super::{BALL, CAMERA, RENDER, SKY, errors, prepare, prepare_files, refusal, seen_at, warnings, with_rest};
 use glam::Vec3;
 use pipeline_data::TransportScene;
 use radiometry::{Rgb, math};
@@ -184,10 +184,34 @@ fn caustics_that_tracing_cannot_find_are_a_warning() {
         warnings(&app).contains("warning[unreachable-caustics]")
     };
     assert!(warned("Trace", "Dielectric: ()"));
+    assert!(warned("Trace", "Plastic: (roughness: 0)"));
+    assert!(warned("Trace", "Principled: (roughness: 0)"));
+    assert!(warned("Trace", "Principled: (clearcoat: 0.5)"));
+    assert!(!warned("Trace", "Plastic: (roughness: 0.5)"));
     assert!(!warned("PhotonMap", "Dielectric: ()"));
     assert!(!warned("Trace", "Diffuse: ()"));
     assert!(
         !warned("Trace", "Conductor: (roughness: 0.2)"),
         "light sampling finds it"
     );
+}
+
+#[test]
+fn an_environment_that_turns_while_the_shutter_is_open_is_a_warning() {
+    let warned = |file: &str| {
+        let turns = "Transform: (rotate: Samples({0: (0, 0, 0), 1: (0, 90, 0)}))";
+        let sky = format!("\"/Sky\": Def(EnvironmentLight: ({file}), {turns}),\n");
+        let camera = "\"/Camera\": Def(Camera: (), MotionBlur: (shutter: (0, 1))),\n";
+        let picture = |folder: &std::path::Path| {
+            let header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n".as_slice();
+            let texels = [128, 128, 128, 129, 64, 64, 64, 129];
+            std::fs::write(folder.join("sky.hdr"), [header, &texels].concat()).unwrap();
+        };
+        let app = prepare_files(&[&sky, BALL, camera, RENDER], picture, |_| ());
+        assert_eq!(errors(&app), "");
+        warnings(&app)
+    };
+    let text = warned("file: \"sky.hdr\"");
+    assert!(text.contains("the environment of `/Sky` is not blurred"), "{text}");
+    assert_eq!(warned(""), "", "it looks the same however it is turned");
 }

@@ -227,3 +227,13 @@ fn a_good_message() {
         ],
     );
 }
+
+#[test]
+fn holes_in_glass_are_a_warning() {
+    let glass = |rest: &str| {
+        let prims = format!("\"/A\": Def(Sphere: (), Principled: (transmission: 1, thickness: 1{rest})),\n");
+        warnings(&with_rest(&prims))
+    };
+    assert!(glass(", alpha: 0.5").contains("warning[alpha-in-glass]: the glass of `/A`"));
+    assert_eq!(glass(""), "");
+}
