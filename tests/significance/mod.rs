@@ -3,6 +3,11 @@
 //! Each value of the image is tested against that of the reference with Welch's t-test: the variance of a pixel's mean comes
 //! from eight batches here and from [`RUNS`] independent runs there, far too few to take it as known.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "judges pictures, and no bit of one depends on it"
+)]
+
 use film::{ExrImage, RgbImage};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt;
@@ -149,7 +154,7 @@ fn statistic(
 
 /// Chance that Student's t is at least as far from 0, to the left or the right.
 ///
-/// P(|T| ≥ t) = ∫ cos^(ν−1) φ dφ over [φ_t, π/2], divided by that over [0, π/2], with t = √ν tan φ_t.
+/// `P(|T| ≥ t) = ∫ cos^(ν−1) φ dφ` over `[φ_t, π/2]`, divided by that over `[0, π/2]`, with `t = √ν tan φ_t`.
 fn p_value(t: f64, freedom: f64) -> f64 {
     /// A normal distribution in place of more degrees of freedom would be off by less than the integration.
     const MOST_FREEDOM: f64 = 1e5;

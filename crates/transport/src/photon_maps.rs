@@ -1,8 +1,10 @@
 use crate::density::{DensityScratch, Estimate, MIN_NORMAL_COSINE, PhotonMap, is_on_surface};
 use crate::photon::MapKind;
+use crate::scene::Scene;
 use crate::vertex::Vertex;
 use glam::Vec3;
-use spatial::{NearestScratch, PhotonTree, PhotonTreeError};
+use radiometry::{Frame, SampleStream, StageKey, math};
+use spatial::{NearestScratch, PhotonTree, PhotonTreeError, Ray};
 
 /// The photon maps of a scene, those that there are.
 #[derive(Clone, Debug, Default)]
@@ -68,18 +70,12 @@ impl PhotonMaps {
         self.sum(|map, scratch| map.estimate_radiance(vertex, scratch), scratch)
     }
 
-    /// Estimates the irradiance on one side of a surface where a photon landed, from every map; the photon itself does not count.
+    /// Estimates the irradiance on one side of a surface, from every map; a photon exactly there does not count.
     ///
     /// - `normal`: unit, on the side that is asked about.
-    /// - `error`: bound on the error of `position`, metres.
     #[must_use]
-    pub fn estimate_irradiance(
-        &self,
-        position: Vec3,
-        normal: Vec3,
-        error: f32,
-        scratch: &mut PhotonMapsScratch,
-    ) -> Estimate {
+    pub fn estimate_irradiance(&self, position: Vec3, normal: Vec3, scratch: &mut PhotonMapsScratch) -> Estimate {
+        let error = position_error(position);
         self.sum(
             |map, scratch| map.estimate_irradiance(position, normal, error, scratch),
             scratch,
@@ -101,16 +97,71 @@ impl PhotonMaps {
         all
     }
 
-    /// Where irradiance is worth computing beforehand: position and unit normal of every `every`-th photon of each map.
+    /// Photons beside which irradiance is worth computing beforehand: every `every`-th of each map, by slot.
     ///
     /// In query order, so that what is left is spread as all are.
     #[must_use]
-    pub fn irradiance_sites(&self, every: usize) -> Vec<(Vec3, Vec3)> {
-        let sites = self.iter().flat_map(|(_, map)| {
-            let slots = (0..map.tree.len()).step_by(every.max(1));
-            slots.map(|slot| (map.tree.position(slot as u32), map.columns.normal[slot]))
+    pub fn irradiance_seeds(&self, every: usize) -> Vec<(MapKind, u32)> {
+        let seeds = self.iter().flat_map(|(kind, map)| {
+            let slots = (0..map.tree.len() as u32).step_by(every.max(1));
+            slots.map(move |slot| (kind, slot))
         });
-        sites.collect()
+        seeds.collect()
+    }
+
+    /// A site on the surface beside a photon: a third to a half of the radius of an estimate away, in a direction of chance.
+    ///
+    /// Photons are spread more evenly than by chance, so there are too few others beside each of them, and with itself too
+    /// many. Some steps away that is forgotten. A photon at whose side no surface is stays the site itself.
+    ///
+    /// - returns position and unit normal, on the side that the photon came from.
+    #[must_use]
+    pub fn site_beside(
+        &self,
+        scene: &Scene,
+        (kind, slot): (MapKind, u32),
+        scratch: &mut PhotonMapsScratch,
+    ) -> Option<(Vec3, Vec3)> {
+        /// Key of the random numbers of the way there.
+        const SITE_STAGE: StageKey = StageKey::new("irradiance sites");
+        /// How far the site is, in radii.
+        const STEP: [f32; 2] = [0.35, 0.5];
+        /// The way leads over the surface at this share of its length.
+        const LIFT: f32 = 0.1;
+        let map = self.get(kind)?;
+        let position = map.tree.position(slot);
+        let normal = map.columns.normal[slot as usize];
+        let scratch = &mut scratch.maps[kind as usize];
+        let radius = map
+            .estimate_irradiance(position, normal, position_error(position), scratch)
+            .radius;
+        let u = SampleStream::new(kind as u64, SITE_STAGE, 0, slot).draw_2d(0, 0);
+        let length = radius * (STEP[0] + (STEP[1] - STEP[0]) * u.x);
+        let (sin, cos) = math::sin_cos(std::f32::consts::TAU * u.y);
+        let frame = Frame::from_normal(normal);
+        let step = (frame.x * cos + frame.y * sin) * length;
+        let lift = normal * (LIFT * length + 2.0 * position_error(position));
+        let way = Ray {
+            t_max: length,
+            ..Ray::new(position + lift, step.normalize_or(frame.x))
+        };
+        let down = Ray {
+            t_max: 2.0 * lift.length(),
+            ..Ray::new(position + lift + step, -normal)
+        };
+        let beside = (!scene.rays.occluded(&way))
+            .then(|| scene.rays.intersect(&down))
+            .flatten();
+        let site = beside.map(|hit| scene.rays.surface(&down, &hit)).map(|point| {
+            let side = if point.ng.dot(normal) < 0.0 {
+                -point.ng
+            } else {
+                point.ng
+            };
+            (point.p, side)
+        });
+        let is_same_surface = |(_, side): &(Vec3, Vec3)| side.dot(normal) >= MIN_NORMAL_COSINE;
+        Some(site.filter(is_same_surface).unwrap_or((position, normal)))
     }
 
     /// The largest radius of any estimate, in metres.
@@ -121,7 +172,12 @@ impl PhotonMaps {
     }
 }
 
-/// Irradiance at some photons, computed beforehand, so that a gather ray asks for one neighbour instead of many.
+/// Bound on the error of a position that was stored in single precision, metres.
+fn position_error(position: Vec3) -> f32 {
+    4.0 * f32::EPSILON * position.abs().max_element()
+}
+
+/// Irradiance beside some photons, computed beforehand, so that a gather ray asks for one neighbour instead of many.
 ///
 /// Source: Christensen, "Faster Photon Map Global Illumination", Journal of Graphics Tools 4(3), 1999.
 /// Differs: it holds the light of all maps together, and the radius of the estimate, by which gather rays judge whether

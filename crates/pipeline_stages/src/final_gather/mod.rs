@@ -38,7 +38,7 @@ pub struct FinalGather {
     pub rays: u32,
     /// Where the light at the ends of rays comes from.
     pub incoming: GatherSource,
-    /// Compute irradiance beforehand at every fourth photon, and let rays read the nearest: several times faster, at the
+    /// Compute irradiance beforehand beside every fourth photon, and let rays read the nearest: several times faster, at the
     /// price of light that changes in small steps, which many rays average out. Progressive maps are read as they are.
     pub precomputed: bool,
 }

@@ -1,6 +1,7 @@
 use bevy_ecs::prelude::*;
+use glam::Vec3;
 use pipeline_core::{Counters, Report, record_items};
-use pipeline_data::BuiltPhotonMaps;
+use pipeline_data::{BuiltPhotonMaps, TransportScene};
 use rayon::prelude::*;
 use transport::{Estimate, IrradianceMap, PhotonMapsScratch};
 
@@ -8,31 +9,30 @@ use transport::{Estimate, IrradianceMap, PhotonMapsScratch};
 const EVERY: usize = 4;
 /// Sites that one task takes: neighbours, so that each search begins with the radius of the last.
 const TASK_SITES: usize = 256;
-/// Bound on the error of a stored position, relative to its coordinates.
-const POSITION_ERROR: f32 = 4.0 * f32::EPSILON;
-
-/// Computes irradiance at a part of the photons, for gather rays to read.
+/// Computes irradiance beside a part of the photons, for gather rays to read.
 pub(super) fn precompute_irradiance(
     mut maps: ResMut<BuiltPhotonMaps>,
+    scene: Res<TransportScene>,
     mut counters: ResMut<Counters>,
     mut report: ResMut<Report>,
 ) {
-    let sites = maps.0.irradiance_sites(EVERY);
-    let estimates: Vec<Estimate> = sites
+    let seeds = maps.0.irradiance_seeds(EVERY);
+    let records: Vec<((Vec3, Vec3), Estimate)> = seeds
         .par_chunks(TASK_SITES)
-        .flat_map_iter(|sites| {
+        .flat_map_iter(|seeds| {
             let mut scratch = PhotonMapsScratch::default();
-            let maps = &maps.0;
-            sites.iter().map(move |(position, normal)| {
-                let error = position.abs().max_element() * POSITION_ERROR;
-                maps.estimate_irradiance(*position, *normal, error, &mut scratch)
+            let (maps, scene) = (&maps.0, &scene.0);
+            seeds.iter().filter_map(move |seed| {
+                let site = maps.site_beside(scene, *seed, &mut scratch)?;
+                Some((site, maps.estimate_irradiance(site.0, site.1, &mut scratch)))
             })
         })
         .collect();
-    record_items(sites.len());
+    record_items(records.len());
     counters
         .counter("final_gather/irradiance records")
-        .add(sites.len() as u64);
+        .add(records.len() as u64);
+    let (sites, estimates): (Vec<_>, Vec<_>) = records.into_iter().unzip();
     match IrradianceMap::new(&sites, &estimates, maps.0.max_radius()) {
         Ok(irradiance) => maps.0.irradiance = Some(irradiance),
         Err(error) => report.warn(format!(
