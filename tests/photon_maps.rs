@@ -143,6 +143,39 @@ fn gathered_furnaces_shine_alike_everywhere() {
     }
 }
 
+/// The room behind the wall is black to the last pixel, whatever is read and however thin the wall.
+#[test]
+fn no_light_leaks_through_a_wall() {
+    const SIDE: usize = 96;
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/thin_wall.ron");
+    let methods: [(&str, &[&str]); 3] = [
+        ("maps that are seen", &[DIRECT, CAUSTIC, INDIRECT]),
+        ("gathering", &[GATHER, "/Render.FinalGather.precomputed=false"]),
+        ("gathering of irradiance", &[GATHER]),
+    ];
+    let resolution = format!("{SIDE}x{SIDE}");
+    for thickness in [0.2, 0.02, 0.002, 0.000_2, 0.000_02] {
+        let size = format!("/World/Wall.Cuboid.size=({thickness},2,2)");
+        // The edge of the wall is nearest to the camera, 2.9 m away, where the picture is 1.94 m wide.
+        let edge = SIDE / 2 + 2 + (0.5 * thickness / 1.94 * SIDE as f64) as usize;
+        for (label, fields) in methods {
+            let image = beauty(&render(
+                &path,
+                &["--resolution", &resolution, "--samples", "4"],
+                &[fields, &[size.as_str()]].concat(),
+            ));
+            let side = |is_dark: bool| {
+                let pixels = image.pixels.iter().enumerate();
+                let chosen = pixels.filter(move |(i, _)| is_dark == (i % SIDE >= edge));
+                chosen.flat_map(|(_, pixel)| *pixel)
+            };
+            let leaked: f32 = side(true).sum();
+            assert!(leaked == 0.0, "{label}, {thickness} m: {leaked}");
+            assert!(mean(side(false)) > 0.1, "{label}, {thickness} m: dark on the lit side");
+        }
+    }
+}
+
 /// A picture with all three maps, gathered and seen, mirrors and glass.
 const SMALL: [&str; 5] = [
     "/Render.DirectPhotonMap.photons=3000",

@@ -62,9 +62,6 @@ fn assert_alike(name: &str, passes: bool, image: &RgbImage, reference: &RgbImage
     panic!("{name}: {found}; see {}", folder.display());
 }
 
-/// Samples of the comparison at equal samples, and of that of blocks.
-const SAMPLES: u32 = 256;
-
 /// The bias that means of whole images may have.
 const MEANS: f64 = 0.005;
 
@@ -76,14 +73,15 @@ const BLOCKS: [f64; 2] = [0.02, 0.05];
 
 /// Compares means, blocks of 8×8 pixels and the relMSE with the reference's.
 ///
+/// - `samples`: enough for the noise of a block to be below what it may be off by.
 /// - `k`: a path tracer with independent samples has relMSE `k`/samples.
 /// - `own`: relMSE of the reference.
-fn assert_meets_reference(name: &str, k: f64, own: f64) {
-    let image = beauty(&render(name, "traced", &["--samples", &SAMPLES.to_string()]));
+fn assert_meets_reference(name: &str, samples: u32, k: f64, own: f64) {
+    let image = beauty(&render(name, "traced", &["--samples", &samples.to_string()]));
     let reference = reference(name);
     let found = compare(&image, &reference, 0).expect("same size");
     let off = Quantiles::of(&block_means(&image, 8), &block_means(&reference, 8));
-    let limit = EXCESS * k / f64::from(SAMPLES) + own;
+    let limit = EXCESS * k / f64::from(samples) + own;
     let found_text = format!(
         "means off by {:?}, relMSE {:.3e} of {limit:.3e}, {off}",
         found.relative_difference, found.rel_mse
@@ -97,25 +95,25 @@ fn assert_meets_reference(name: &str, k: f64, own: f64) {
 #[test]
 #[ignore = "takes minutes; .ci/full runs it"]
 fn env_spheres_meets_the_reference() {
-    assert_meets_reference("env_spheres", 1.35, 0.000_26);
+    assert_meets_reference("env_spheres", 256, 1.35, 0.000_26);
 }
 
 #[test]
 #[ignore = "takes minutes; .ci/full runs it"]
 fn dof_motion_meets_the_reference() {
-    assert_meets_reference("dof_motion", 0.3, 0.000_06);
+    assert_meets_reference("dof_motion", 256, 0.3, 0.000_06);
 }
 
 #[test]
 #[ignore = "takes minutes; .ci/full runs it"]
 fn cornell_meets_the_reference() {
-    assert_meets_reference("cornell", 1.0, 0.000_07);
+    assert_meets_reference("cornell", 256, 1.0, 0.000_07);
 }
 
 #[test]
 #[ignore = "takes minutes; .ci/full runs it"]
 fn cornell_glass_meets_the_reference() {
-    assert_meets_reference("cornell_glass", 8.8, 0.000_13);
+    assert_meets_reference("cornell_glass", 1024, 8.8, 0.000_13);
 }
 
 #[test]

@@ -1,4 +1,6 @@
+use crate::scene::Scene;
 use crate::vertex::Vertex;
+use crate::wall::is_walled_off;
 use glam::Vec3;
 use radiometry::{Rgb, math, unpack_direction};
 use spatial::{Nearest, NearestScratch, PhotonTree};
@@ -82,8 +84,37 @@ pub struct PhotonColumns {
     pub flux: Vec<Rgb>,
     /// Octahedral direction to where it came from.
     pub direction: Vec<u32>,
-    /// Unit normal of where it landed, on the side it came from; not packed, since every candidate of a search is asked.
-    pub normal: Vec<Vec3>,
+    /// Where it landed; not packed, since every candidate of a search is asked.
+    pub surface: Vec<PhotonSurface>,
+}
+
+/// The surface around a photon. 16 bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PhotonSurface {
+    /// Unit, on the side that the photon came from.
+    pub normal: Vec3,
+    /// Up to this distance, in metres, no wall stands on the surface: see [`clearance`](crate::clearance).
+    pub clearance: f32,
+}
+
+impl PhotonSurface {
+    /// A surface that no wall stands on.
+    #[must_use]
+    pub fn open(normal: Vec3) -> Self {
+        Self {
+            normal,
+            clearance: f32::INFINITY,
+        }
+    }
+
+    /// True when a wall stands between a place and this one.
+    ///
+    /// - `offset`: from the place to this one, metres.
+    #[inline]
+    pub(crate) fn is_walled_off(&self, scene: &Scene, from: Vec3, offset: Vec3, dist_sq: f32) -> bool {
+        dist_sq > self.clearance * self.clearance
+            && is_walled_off(scene, from, from + offset, self.normal, offset.dot(self.normal))
+    }
 }
 
 /// Photons ready for density estimation: a tree with the columns that the estimate reads.
@@ -126,7 +157,8 @@ const MAX_ELEVATION: f32 = 0.3;
 pub(crate) const MIN_NORMAL_COSINE: f32 = 0.8;
 
 /// Where an estimate is made, and which photons belong to the surface there.
-struct Site {
+struct Site<'a> {
+    scene: &'a Scene,
     position: Vec3,
     /// Unit, on the side that is lit.
     normal: Vec3,
@@ -138,9 +170,10 @@ struct Site {
     is_at_a_photon: bool,
 }
 
-impl Site {
-    fn of(vertex: &Vertex<'_>) -> Self {
+impl<'a> Site<'a> {
+    fn of(scene: &'a Scene, vertex: &Vertex<'_>) -> Self {
         Self {
+            scene,
             position: vertex.point.p,
             normal: vertex.facing_normal(),
             error: vertex.point.error,
@@ -152,8 +185,14 @@ impl Site {
 
 impl PhotonMap {
     /// Calls `f` with the slot of each photon that an estimate at a vertex would use.
-    pub(crate) fn for_nearest(&self, vertex: &Vertex<'_>, scratch: &mut DensityScratch, mut f: impl FnMut(usize)) {
-        self.find(&Site::of(vertex), scratch, |found, _| {
+    pub(crate) fn for_nearest(
+        &self,
+        scene: &Scene,
+        vertex: &Vertex<'_>,
+        scratch: &mut DensityScratch,
+        mut f: impl FnMut(usize),
+    ) {
+        self.find(&Site::of(scene, vertex), scratch, |found, _| {
             found.inside().for_each(|photon| f(photon.slot as usize));
         });
     }
@@ -164,14 +203,14 @@ impl PhotonMap {
     ///
     /// Source: Jensen, "Global Illumination using Photon Maps", EGWR 1996.
     /// Differs: the k-th photon only sets the radius (García Hernández et al. 2012), so that a uniform field is unbiased
-    /// with every filter. Photons on other surfaces (normal, elevation over the plane, side of incidence) are neither
-    /// used nor counted. Only diffuse lobes reflect.
+    /// with every filter. Photons on other surfaces (normal, elevation over the plane, side of incidence) and behind
+    /// walls that stand on this one are neither used nor counted. Only diffuse lobes reflect.
     ///
     /// When fewer than `nearest` are in reach, all of them count over π `max_radius`².
     /// Bias: blurs over r. Cost: O(k log N), no allocation once `scratch` has grown.
     #[must_use]
-    pub fn estimate_radiance(&self, vertex: &Vertex<'_>, scratch: &mut DensityScratch) -> Estimate {
-        let site = Site::of(vertex);
+    pub fn estimate_radiance(&self, scene: &Scene, vertex: &Vertex<'_>, scratch: &mut DensityScratch) -> Estimate {
+        let site = Site::of(scene, vertex);
         match vertex.lambertian() {
             // The same from every direction; the normals have made sure of the side.
             Some(value) => {
@@ -196,12 +235,14 @@ impl PhotonMap {
     #[must_use]
     pub fn estimate_irradiance(
         &self,
+        scene: &Scene,
         position: Vec3,
         normal: Vec3,
         error: f32,
         scratch: &mut DensityScratch,
     ) -> Estimate {
         let site = Site {
+            scene,
             position,
             normal,
             error,
@@ -213,7 +254,7 @@ impl PhotonMap {
 
     /// Adds up `factor(slot) · w · Φ` over the photons of a site, divided by the area of their disc.
     #[inline]
-    fn estimate(&self, site: &Site, scratch: &mut DensityScratch, factor: impl Fn(usize) -> Rgb) -> Estimate {
+    fn estimate(&self, site: &Site<'_>, scratch: &mut DensityScratch, factor: impl Fn(usize) -> Rgb) -> Estimate {
         let DensitySettings { filter, shrink, .. } = self.density;
         self.find(site, scratch, |found, radius_sq| {
             if radius_sq <= 0.0 {
@@ -236,7 +277,7 @@ impl PhotonMap {
 
     /// Finds the photons of a site, and gives them to `receive` with the squared radius of its disc.
     #[inline]
-    fn find<R>(&self, site: &Site, scratch: &mut DensityScratch, receive: impl FnOnce(Nearest<'_>, f32) -> R) -> R {
+    fn find<R>(&self, site: &Site<'_>, scratch: &mut DensityScratch, receive: impl FnOnce(Nearest<'_>, f32) -> R) -> R {
         let DensitySettings {
             nearest: k,
             max_radius,
@@ -246,8 +287,10 @@ impl PhotonMap {
         let error_sq = site.error * site.error;
         let accept = |slot: u32, offset: Vec3, dist_sq: f32| {
             (!site.is_at_a_photon || dist_sq > 0.0) && is_on_surface(offset, site.normal, dist_sq, error_sq) && {
-                let cosine = self.columns.normal[slot as usize].dot(site.normal);
+                let surface = &self.columns.surface[slot as usize];
+                let cosine = surface.normal.dot(site.normal);
                 (if site.both_sides { cosine.abs() } else { cosine }) >= MIN_NORMAL_COSINE
+                    && !surface.is_walled_off(site.scene, site.position, offset, dist_sq)
             }
         };
         let DensityScratch { nearest, last } = scratch;
@@ -273,7 +316,7 @@ impl PhotonMap {
         self.tree.memory_bytes()
             + c.flux.capacity() * size_of::<Rgb>()
             + c.direction.capacity() * size_of::<u32>()
-            + c.normal.capacity() * size_of::<Vec3>()
+            + c.surface.capacity() * size_of::<PhotonSurface>()
     }
 }
 

@@ -116,12 +116,12 @@ fn light_along(
         let vertex = Vertex::new(scene, &hit, -ray.direction, &path.medium);
         let mut is_read = false;
         if let (Some(maps), true) = (maps, vertex.bsdf.has_diffuse() && path.depth < methods.max_depth) {
-            let all = maps.estimate_all(&vertex, scratch);
+            let all = maps.estimate_all(scene, &vertex, scratch);
             is_read = length > all.radius;
             let seen = if is_read {
                 all
             } else {
-                maps.estimate_radiance(MapKind::Caustic, &vertex, scratch)
+                maps.estimate_radiance(scene, MapKind::Caustic, &vertex, scratch)
             };
             light += path.throughput * seen.value;
         }

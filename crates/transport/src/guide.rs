@@ -1,4 +1,5 @@
 use crate::density::{DensityScratch, PhotonMap};
+use crate::scene::Scene;
 use crate::vertex::Vertex;
 use glam::{Vec2, Vec3};
 use radiometry::{math, unpack_direction};
@@ -42,6 +43,7 @@ impl Guide {
     /// - `scratch`: one for each map.
     #[must_use]
     pub fn at<'m>(
+        scene: &Scene,
         vertex: &Vertex<'_>,
         maps: impl IntoIterator<Item = (&'m PhotonMap, &'m mut DensityScratch)>,
         mix: f32,
@@ -51,7 +53,7 @@ impl Guide {
         }
         let mut flux = [0.0_f32; BINS];
         for (map, scratch) in maps {
-            map.for_nearest(vertex, scratch, |slot| {
+            map.for_nearest(scene, vertex, scratch, |slot| {
                 let from = vertex.to_local(unpack_direction(map.columns.direction[slot]));
                 flux[bin_of(from)] += map.columns.flux[slot].mean();
             });

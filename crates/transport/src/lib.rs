@@ -41,10 +41,12 @@ mod scene;
 mod textures;
 mod vertex;
 mod visible;
+mod wall;
 
 pub use camera::Camera;
 pub use density::{
-    DensityFilter, DensityScratch, DensitySettings, Estimate, PhotonColumns, PhotonMap, progressive_shrink,
+    DensityFilter, DensityScratch, DensitySettings, Estimate, PhotonColumns, PhotonMap, PhotonSurface,
+    progressive_shrink,
 };
 pub use emission::{EmissionSampler, EmittedPhoton};
 pub use frame::MovingFrame;
@@ -61,3 +63,4 @@ pub use scene::{Material, Scene};
 pub use textures::{Coverage, Input, NormalMap, PrincipledInputs, SurfaceInputs, TexturedBsdf, TexturedSurface};
 pub use vertex::Vertex;
 pub use visible::{landing_share, visible_targets};
+pub use wall::clearance;

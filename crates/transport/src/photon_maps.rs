@@ -1,4 +1,4 @@
-use crate::density::{DensityScratch, Estimate, MIN_NORMAL_COSINE, PhotonMap, is_on_surface};
+use crate::density::{DensityScratch, Estimate, MIN_NORMAL_COSINE, PhotonMap, PhotonSurface, is_on_surface};
 use crate::photon::MapKind;
 use crate::scene::Scene;
 use crate::vertex::Vertex;
@@ -30,6 +30,12 @@ impl PhotonMaps {
         self.maps[kind as usize].as_ref()
     }
 
+    /// The map of a kind, if there is one, to complete it.
+    #[must_use]
+    pub fn get_mut(&mut self, kind: MapKind) -> Option<&mut PhotonMap> {
+        self.maps[kind as usize].as_mut()
+    }
+
     /// Puts a map in the place of its kind. What was computed beforehand is out of date then, and dropped.
     pub fn insert(&mut self, kind: MapKind, map: PhotonMap) {
         self.maps[kind as usize] = Some(map);
@@ -46,9 +52,15 @@ impl PhotonMaps {
     /// Estimates the radiance that a vertex reflects of the photons of one kind; black where there is no such map.
     #[inline]
     #[must_use]
-    pub fn estimate_radiance(&self, kind: MapKind, vertex: &Vertex<'_>, scratch: &mut PhotonMapsScratch) -> Estimate {
+    pub fn estimate_radiance(
+        &self,
+        scene: &Scene,
+        kind: MapKind,
+        vertex: &Vertex<'_>,
+        scratch: &mut PhotonMapsScratch,
+    ) -> Estimate {
         self.get(kind).map_or_else(Estimate::default, |map| {
-            map.estimate_radiance(vertex, &mut scratch.maps[kind as usize])
+            map.estimate_radiance(scene, vertex, &mut scratch.maps[kind as usize])
         })
     }
 
@@ -57,27 +69,35 @@ impl PhotonMaps {
     /// Lambertian surfaces use irradiance that was computed beforehand, where there is some. The radius is the widest of
     /// all estimates.
     #[must_use]
-    pub fn estimate_all(&self, vertex: &Vertex<'_>, scratch: &mut PhotonMapsScratch) -> Estimate {
+    pub fn estimate_all(&self, scene: &Scene, vertex: &Vertex<'_>, scratch: &mut PhotonMapsScratch) -> Estimate {
         if let (Some(irradiance), Some(value)) = (&self.irradiance, vertex.diffuse_value()) {
             let normal = vertex.facing_normal();
-            if let Some(found) = irradiance.nearest(vertex.point.p, normal, vertex.point.error, &mut scratch.nearest) {
+            if let Some(found) =
+                irradiance.nearest(scene, vertex.point.p, normal, vertex.point.error, &mut scratch.nearest)
+            {
                 return Estimate {
                     value: found.value * value,
                     ..found
                 };
             }
         }
-        self.sum(|map, scratch| map.estimate_radiance(vertex, scratch), scratch)
+        self.sum(|map, scratch| map.estimate_radiance(scene, vertex, scratch), scratch)
     }
 
     /// Estimates the irradiance on one side of a surface, from every map; a photon exactly there does not count.
     ///
     /// - `normal`: unit, on the side that is asked about.
     #[must_use]
-    pub fn estimate_irradiance(&self, position: Vec3, normal: Vec3, scratch: &mut PhotonMapsScratch) -> Estimate {
+    pub fn estimate_irradiance(
+        &self,
+        scene: &Scene,
+        position: Vec3,
+        normal: Vec3,
+        scratch: &mut PhotonMapsScratch,
+    ) -> Estimate {
         let error = position_error(position);
         self.sum(
-            |map, scratch| map.estimate_irradiance(position, normal, error, scratch),
+            |map, scratch| map.estimate_irradiance(scene, position, normal, error, scratch),
             scratch,
         )
     }
@@ -130,10 +150,10 @@ impl PhotonMaps {
         const LIFT: f32 = 0.1;
         let map = self.get(kind)?;
         let position = map.tree.position(slot);
-        let normal = map.columns.normal[slot as usize];
+        let normal = map.columns.surface[slot as usize].normal;
         let scratch = &mut scratch.maps[kind as usize];
         let radius = map
-            .estimate_irradiance(position, normal, position_error(position), scratch)
+            .estimate_irradiance(scene, position, normal, position_error(position), scratch)
             .radius;
         let u = SampleStream::new(kind as u64, SITE_STAGE, 0, slot).draw_2d(0, 0);
         let length = radius * (STEP[0] + (STEP[1] - STEP[0]) * u.x);
@@ -186,7 +206,7 @@ fn position_error(position: Vec3) -> f32 {
 pub struct IrradianceMap {
     tree: PhotonTree,
     /// By slot of the tree.
-    columns: Vec<(Vec3, Estimate)>,
+    columns: Vec<(PhotonSurface, Estimate)>,
     /// Records further away than this tell nothing, metres.
     max_radius: f32,
 }
@@ -199,7 +219,11 @@ impl IrradianceMap {
     ///
     /// # Errors
     /// As [`PhotonTree::build`].
-    pub fn new(sites: &[(Vec3, Vec3)], estimates: &[Estimate], max_radius: f32) -> Result<Self, PhotonTreeError> {
+    pub fn new(
+        sites: &[(Vec3, PhotonSurface)],
+        estimates: &[Estimate],
+        max_radius: f32,
+    ) -> Result<Self, PhotonTreeError> {
         let tree = PhotonTree::from_fn(sites.len(), |row| sites[row].0)?;
         let column = |row: &u32| (sites[*row as usize].1, estimates[*row as usize]);
         Ok(Self {
@@ -209,15 +233,24 @@ impl IrradianceMap {
         })
     }
 
-    /// The irradiance at the nearest record on the same side of the same surface.
+    /// The irradiance at the nearest record on the same side of the same surface, no wall between.
     ///
     /// - `normal`: unit, on the side that is asked about; `error`: bound on the error of `position`, metres.
     #[must_use]
-    pub fn nearest(&self, position: Vec3, normal: Vec3, error: f32, scratch: &mut NearestScratch) -> Option<Estimate> {
+    pub fn nearest(
+        &self,
+        scene: &Scene,
+        position: Vec3,
+        normal: Vec3,
+        error: f32,
+        scratch: &mut NearestScratch,
+    ) -> Option<Estimate> {
         let error_sq = error * error;
         let accept = |slot: u32, offset: Vec3, dist_sq: f32| {
+            let surface = &self.columns[slot as usize].0;
             is_on_surface(offset, normal, dist_sq, error_sq)
-                && self.columns[slot as usize].0.dot(normal) >= MIN_NORMAL_COSINE
+                && surface.normal.dot(normal) >= MIN_NORMAL_COSINE
+                && !surface.is_walled_off(scene, position, offset, dist_sq)
         };
         let found = self.tree.nearest_where(position, 1, self.max_radius, accept, scratch);
         found.kth().map(|nearest| self.columns[nearest.slot as usize].1)

@@ -131,6 +131,8 @@ pub(crate) struct Passage {
     pub(crate) is_dispersive: bool,
     /// Is less than whole somewhere.
     pub(crate) has_alpha: bool,
+    /// Light gets to its other side somewhere.
+    pub(crate) lets_through: bool,
 }
 
 impl Passage {
@@ -139,6 +141,7 @@ impl Passage {
             has_inside: material.has_inside(),
             is_dispersive: material.dispersion.is_some(),
             has_alpha: material.has_alpha(),
+            lets_through: material.transmits() || material.has_alpha(),
         }
     }
 

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use transport::{
     CausticMethod, DensityFilter, DensityScratch, DensitySettings, EmissionSampler, Environment, Event, Layer,
     LightSource, MapKind, MapKinds, Material, Methods, PHOTON_STAGE, Path, PathMedium, PhotonColumns, PhotonMap,
-    PhotonMaps, Scene, TargetSphere, Vertex, arrive, emitted_light, scatter, trace_photon,
+    PhotonMaps, PhotonSurface, Scene, TargetSphere, Vertex, arrive, emitted_light, scatter, trace_photon,
 };
 
 /// The caustic photons of `emitted` paths.
@@ -31,7 +31,7 @@ fn caustic_map(scene: &Scene, emitted: u32, density: DensitySettings) -> PhotonM
     let columns = PhotonColumns {
         flux: rows().map(|d| d.flux * (1.0 / emitted as f32)).collect(),
         direction: rows().map(|d| radiometry::pack_direction(d.direction)).collect(),
-        normal: rows().map(|d| d.normal).collect(),
+        surface: rows().map(|d| PhotonSurface::open(d.normal)).collect(),
     };
     let mut maps = PhotonMaps::default();
     maps.insert(MapKind::Caustic, PhotonMap { tree, columns, density });
@@ -327,7 +327,7 @@ fn uniform_field(n: u32, seed: u64, density: DensitySettings) -> PhotonMap {
     let columns = PhotonColumns {
         flux: vec![Rgb::splat(1.0 / n as f32); n as usize],
         direction: vec![up; n as usize],
-        normal: vec![Vec3::Z; n as usize],
+        surface: vec![PhotonSurface::open(Vec3::Z); n as usize],
     };
     PhotonMap { tree, columns, density }
 }
@@ -373,7 +373,7 @@ fn a_uniform_photon_field_returns_one_with_every_filter_and_k() {
                     let hit = arrive(&scene, &mut path, &ray).expect("the plane is there");
                     let vertex = Vertex::new(&scene, &hit, Vec3::Z, &PathMedium::VACUUM);
                     // Irradiance 1 on albedo 1 reflects 1/π.
-                    f64::from(map.estimate_radiance(&vertex, &mut scratch).value.g) * std::f64::consts::PI
+                    f64::from(map.estimate_radiance(&scene, &vertex, &mut scratch).value.g) * std::f64::consts::PI
                 })
                 .collect();
             let n = fields as f64;

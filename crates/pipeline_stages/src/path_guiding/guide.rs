@@ -38,7 +38,7 @@ pub(super) fn guide_paths(
                 let at = |((ray, path), hit): ((&spatial::Ray, &transport::Path), &Option<_>)| match hit {
                     Some(hit) => {
                         let vertex = Vertex::new(&scene.0, hit, -ray.direction, &path.medium);
-                        Guide::at(&vertex, maps.iter().copied().zip(&mut *scratch), plan.mix)
+                        Guide::at(&scene.0, &vertex, maps.iter().copied().zip(&mut *scratch), plan.mix)
                     }
                     None => Guide::NONE,
                 };

@@ -2,10 +2,11 @@ use super::run::PhotonRun;
 use bevy_ecs::prelude::*;
 use glam::Vec3;
 use pipeline_core::{RenderClock, Report, record_items};
-use pipeline_data::{BuiltPhotonMaps, Photon, PhotonMarker};
+use pipeline_data::{BuiltPhotonMaps, Photon, PhotonMarker, TransportScene};
 use radiometry::unpack_direction;
+use rayon::prelude::*;
 use spatial::{PhotonTree, PhotonTreeError};
-use transport::{DensitySettings, PhotonColumns, PhotonMap};
+use transport::{DensitySettings, PhotonColumns, PhotonMap, PhotonSurface, clearance};
 
 /// Builds the tree over the photon entities of one map and copies what the estimate reads into its order.
 pub(super) fn build_photon_map<M: PhotonMarker>(
@@ -37,6 +38,26 @@ pub(super) fn build_photon_map<M: PhotonMarker>(
     }
 }
 
+/// Finds how far each photon is from the next wall, so that estimates need not look.
+pub(super) fn probe_walls<M: PhotonMarker>(
+    run: Res<PhotonRun>,
+    scene: Res<TransportScene>,
+    mut built: ResMut<BuiltPhotonMaps>,
+) {
+    let has_landed = run.landed.iter().any(|map| map.plan.kind == M::KIND);
+    let Some(map) = built.0.get_mut(M::KIND).filter(|_| has_landed) else {
+        return;
+    };
+    let reach = map.density.max_radius * map.density.shrink;
+    let tree = &map.tree;
+    let surfaces = &mut map.columns.surface;
+    surfaces.par_iter_mut().enumerate().for_each(|(slot, surface)| {
+        let slot = slot as u32;
+        surface.clearance = clearance(&scene.0, tree.position(slot), surface.normal, reach, slot);
+    });
+    record_items(surfaces.len());
+}
+
 /// Makes the place that maps are put in. Until they are there, nothing may read it.
 pub(super) fn make_room_for_maps(mut commands: Commands) {
     commands.init_resource::<BuiltPhotonMaps>();
@@ -58,7 +79,9 @@ pub fn photon_map(photons: &[Photon], density: DensitySettings) -> Result<Photon
     let columns = PhotonColumns {
         flux: rows().map(|p| p.flux).collect(),
         direction: rows().map(|p| p.direction).collect(),
-        normal: rows().map(|p| unpack_direction(p.normal)).collect(),
+        surface: rows()
+            .map(|p| PhotonSurface::open(unpack_direction(p.normal)))
+            .collect(),
     };
     Ok(PhotonMap { tree, columns, density })
 }

@@ -85,7 +85,7 @@ pub(super) fn gather_photons<M: PhotonMarker>(
                     continue;
                 }
                 lookups += 1;
-                let radiance = map.estimate_radiance(&vertex, scratch).value;
+                let radiance = map.estimate_radiance(&scene.0, &vertex, scratch).value;
                 if !radiance.is_black() {
                     term.log.add(path.slot, layer, path.throughput * radiance);
                 }

@@ -99,6 +99,9 @@ impl Plugin for PhotonMapPlugin {
                     build::build_photon_map::<DirectPhoton>,
                     build::build_photon_map::<CausticPhoton>,
                     build::build_photon_map::<IndirectPhoton>,
+                    build::probe_walls::<DirectPhoton>,
+                    build::probe_walls::<CausticPhoton>,
+                    build::probe_walls::<IndirectPhoton>,
                     build::finish_photons,
                 )
                     .chain()

@@ -110,7 +110,7 @@ fn trace(scene: &Scene, methods: &Methods, maps: &PhotonMaps, ray: Ray, samples:
             let vertex = Vertex::new(scene, &hit, -ray.direction, &PathMedium::VACUUM);
             for kind in MapKind::ALL.into_iter().filter(|_| vertex.bsdf.has_diffuse()) {
                 if let Some(layer) = methods.map_layer(kind, path.class) {
-                    let estimate = maps.estimate_radiance(kind, &vertex, &mut scratch);
+                    let estimate = maps.estimate_radiance(scene, kind, &vertex, &mut scratch);
                     add(layer, path.throughput * estimate.value);
                 }
             }
