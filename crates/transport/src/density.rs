@@ -1,9 +1,9 @@
 use crate::scene::Scene;
 use crate::vertex::Vertex;
-use crate::wall::is_walled_off;
+use crate::wall::Walls;
 use glam::Vec3;
 use radiometry::{Rgb, math, unpack_direction};
-use spatial::{Nearest, NearestScratch, PhotonTree};
+use spatial::{Nearest, NearestScratch, Neighbour, PhotonTree};
 use std::f32::consts::PI;
 
 /// How photons are weighted over the disc that they are gathered in.
@@ -88,32 +88,33 @@ pub struct PhotonColumns {
     pub surface: Vec<PhotonSurface>,
 }
 
-/// The surface around a photon. 16 bytes.
+/// The surface around a photon. 28 bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotonSurface {
     /// Unit, on the side that the photon came from.
     pub normal: Vec3,
-    /// Up to this distance, in metres, no wall stands on the surface: see [`clearance`](crate::clearance).
-    pub clearance: f32,
+    /// What stands on it within the largest radius of an estimate.
+    pub walls: Walls,
 }
 
 impl PhotonSurface {
+    /// True when a wall stands between the photon and another place.
+    ///
+    /// - `position`: of the photon; `reach`: that its walls were looked for in, metres.
+    #[inline]
+    pub(crate) fn is_parted(&self, scene: &Scene, position: Vec3, reach: f32, place: Vec3) -> bool {
+        let offset = place - position;
+        self.walls
+            .part(scene, (position, self.normal), reach, offset, offset.length_squared())
+    }
+
     /// A surface that no wall stands on.
     #[must_use]
     pub fn open(normal: Vec3) -> Self {
         Self {
             normal,
-            clearance: f32::INFINITY,
+            walls: Walls::NONE,
         }
-    }
-
-    /// True when a wall stands between a place and this one.
-    ///
-    /// - `offset`: from the place to this one, metres.
-    #[inline]
-    pub(crate) fn is_walled_off(&self, scene: &Scene, from: Vec3, offset: Vec3, dist_sq: f32) -> bool {
-        dist_sq > self.clearance * self.clearance
-            && is_walled_off(scene, from, from + offset, self.normal, offset.dot(self.normal))
     }
 }
 
@@ -192,8 +193,10 @@ impl PhotonMap {
         scratch: &mut DensityScratch,
         mut f: impl FnMut(usize),
     ) {
-        self.find(&Site::of(scene, vertex), scratch, |found, _| {
-            found.inside().for_each(|photon| f(photon.slot as usize));
+        let site = Site::of(scene, vertex);
+        self.find(&site, scratch, |found, _| {
+            let used = found.inside().filter(|photon| !self.is_walled_off(&site, photon));
+            used.for_each(|photon| f(photon.slot as usize));
         });
     }
 
@@ -203,8 +206,9 @@ impl PhotonMap {
     ///
     /// Source: Jensen, "Global Illumination using Photon Maps", EGWR 1996.
     /// Differs: the k-th photon only sets the radius (García Hernández et al. 2012), so that a uniform field is unbiased
-    /// with every filter. Photons on other surfaces (normal, elevation over the plane, side of incidence) and behind
-    /// walls that stand on this one are neither used nor counted. Only diffuse lobes reflect.
+    /// with every filter. Photons on other surfaces (normal, elevation over the plane, side of incidence) are neither
+    /// used nor counted; those behind walls that stand on this one are counted and not used, so that a dark place next to
+    /// a bright one is seen with a small disc. Only diffuse lobes reflect.
     ///
     /// When fewer than `nearest` are in reach, all of them count over π `max_radius`².
     /// Bias: blurs over r. Cost: O(k log N), no allocation once `scratch` has grown.
@@ -265,6 +269,9 @@ impl PhotonMap {
                 if shrink < 1.0 && photon.dist_sq > radius_sq {
                     continue;
                 }
+                if self.is_walled_off(site, &photon) {
+                    continue;
+                }
                 let slot = photon.slot as usize;
                 sum += self.columns.flux[slot] * factor(slot) * filter.weight(photon.dist_sq, radius_sq);
             }
@@ -273,6 +280,15 @@ impl PhotonMap {
                 radius: radius_sq.sqrt(),
             }
         })
+    }
+
+    /// True when a wall stands between a site and a photon that was found around it.
+    #[inline]
+    fn is_walled_off(&self, site: &Site<'_>, photon: &Neighbour) -> bool {
+        let surface = &self.columns.surface[photon.slot as usize];
+        let reach = self.density.max_radius;
+        surface.walls.may_part(reach, photon.dist_sq)
+            && surface.is_parted(site.scene, self.tree.position(photon.slot), reach, site.position)
     }
 
     /// Finds the photons of a site, and gives them to `receive` with the squared radius of its disc.
@@ -290,7 +306,6 @@ impl PhotonMap {
                 let surface = &self.columns.surface[slot as usize];
                 let cosine = surface.normal.dot(site.normal);
                 (if site.both_sides { cosine.abs() } else { cosine }) >= MIN_NORMAL_COSINE
-                    && !surface.is_walled_off(site.scene, site.position, offset, dist_sq)
             }
         };
         let DensityScratch { nearest, last } = scratch;

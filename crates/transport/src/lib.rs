@@ -63,4 +63,4 @@ pub use scene::{Material, Scene};
 pub use textures::{Coverage, Input, NormalMap, PrincipledInputs, SurfaceInputs, TexturedBsdf, TexturedSurface};
 pub use vertex::Vertex;
 pub use visible::{landing_share, visible_targets};
-pub use wall::clearance;
+pub use wall::Walls;

@@ -187,8 +187,7 @@ impl PhotonMaps {
     /// The largest radius of any estimate, in metres.
     #[must_use]
     pub fn max_radius(&self) -> f32 {
-        let radius = |(_, map): (MapKind, &PhotonMap)| map.density.max_radius * map.density.shrink;
-        self.iter().map(radius).fold(0.0, f32::max)
+        self.iter().map(|(_, map)| map.density.max_radius).fold(0.0, f32::max)
     }
 }
 
@@ -250,7 +249,7 @@ impl IrradianceMap {
             let surface = &self.columns[slot as usize].0;
             is_on_surface(offset, normal, dist_sq, error_sq)
                 && surface.normal.dot(normal) >= MIN_NORMAL_COSINE
-                && !surface.is_walled_off(scene, position, offset, dist_sq)
+                && !surface.is_parted(scene, position + offset, self.max_radius, position)
         };
         let found = self.tree.nearest_where(position, 1, self.max_radius, accept, scratch);
         found.kth().map(|nearest| self.columns[nearest.slot as usize].1)

@@ -3,7 +3,7 @@ use glam::Vec3;
 use pipeline_core::{Counters, Report, record_items};
 use pipeline_data::{BuiltPhotonMaps, TransportScene};
 use rayon::prelude::*;
-use transport::{Estimate, IrradianceMap, PhotonMapsScratch, PhotonSurface, clearance};
+use transport::{Estimate, IrradianceMap, PhotonMapsScratch, PhotonSurface, Walls};
 
 /// Irradiance is computed at one photon of so many.
 const EVERY: usize = 4;
@@ -27,8 +27,8 @@ pub(super) fn precompute_irradiance(
             seeds.iter().filter_map(move |seed| {
                 let (position, normal) = maps.site_beside(scene, *seed, &mut scratch)?;
                 let estimate = maps.estimate_irradiance(scene, position, normal, &mut scratch);
-                let clearance = clearance(scene, position, normal, reach, seed.1);
-                Some(((position, PhotonSurface { normal, clearance }), estimate))
+                let walls = Walls::around(scene, position, normal, reach);
+                Some(((position, PhotonSurface { normal, walls }), estimate))
             })
         })
         .collect();

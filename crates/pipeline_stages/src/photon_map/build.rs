@@ -6,7 +6,7 @@ use pipeline_data::{BuiltPhotonMaps, Photon, PhotonMarker, TransportScene};
 use radiometry::unpack_direction;
 use rayon::prelude::*;
 use spatial::{PhotonTree, PhotonTreeError};
-use transport::{DensitySettings, PhotonColumns, PhotonMap, PhotonSurface, clearance};
+use transport::{DensitySettings, PhotonColumns, PhotonMap, PhotonSurface, Walls};
 
 /// Builds the tree over the photon entities of one map and copies what the estimate reads into its order.
 pub(super) fn build_photon_map<M: PhotonMarker>(
@@ -38,7 +38,7 @@ pub(super) fn build_photon_map<M: PhotonMarker>(
     }
 }
 
-/// Finds how far each photon is from the next wall, so that estimates need not look.
+/// Looks for the walls around each photon, so that estimates need not.
 pub(super) fn probe_walls<M: PhotonMarker>(
     run: Res<PhotonRun>,
     scene: Res<TransportScene>,
@@ -48,12 +48,11 @@ pub(super) fn probe_walls<M: PhotonMarker>(
     let Some(map) = built.0.get_mut(M::KIND).filter(|_| has_landed) else {
         return;
     };
-    let reach = map.density.max_radius * map.density.shrink;
+    let reach = map.density.max_radius;
     let tree = &map.tree;
     let surfaces = &mut map.columns.surface;
     surfaces.par_iter_mut().enumerate().for_each(|(slot, surface)| {
-        let slot = slot as u32;
-        surface.clearance = clearance(&scene.0, tree.position(slot), surface.normal, reach, slot);
+        surface.walls = Walls::around(&scene.0, tree.position(slot as u32), surface.normal, reach);
     });
     record_items(surfaces.len());
 }
