@@ -39,6 +39,7 @@ mod photon_maps;
 mod projection;
 mod scene;
 mod textures;
+mod thinning;
 mod vertex;
 mod visible;
 
@@ -59,5 +60,6 @@ pub use photon_maps::{IrradianceMap, PhotonMaps, PhotonMapsScratch};
 pub use projection::{MAX_TARGETS, TargetSphere, cluster_targets};
 pub use scene::{Material, Scene};
 pub use textures::{Coverage, Input, NormalMap, PrincipledInputs, SurfaceInputs, TexturedBsdf, TexturedSurface};
+pub use thinning::{PhotonRows, thin_photons};
 pub use vertex::Vertex;
 pub use visible::{landing_share, visible_targets};

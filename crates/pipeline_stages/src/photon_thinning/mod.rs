@@ -1,0 +1,80 @@
+//! Photon thinning: fewer photons where they are denser than the picture has use for, with all their flux.
+//!
+//! Scene: `"/Render": Def(PhotonThinning: (density: 4))`, beside whatever makes photon maps.
+//! Sets: `PrepareStages` (`plan_thinning`), `RevisePhotons` (`thin_photons`).
+//! Reads the camera and stored photons. Removes some of these entities and writes the flux of the others.
+//! Counters: `photon_thinning/photons removed`.
+//!
+//! Caustics gather most photons in a few bright places, where they cost memory and time and show nothing that a pixel could. There
+//! only as many stay as are asked for, each with the flux of those that went around it, so that the memory of a map grows no further
+//! once every lit place has its share, and many photons can be traced for the sake of dim ones. What is stored is
+//! what the maps, `pipeline photons` and files of photons have; photons taken from a file are not thinned again.
+//!
+//! Estimates keep their number of photons, hence are wider where it was thinned: less noise, more blur.
+//!
+//! Limits: pixels are those of the camera, also for what mirrors or gather rays see; a photon that takes over flux keeps its
+//! own direction.
+//! Source: Suykens and Willems, "Density Control for Photon Maps", Rendering Workshop 2000.
+
+mod plan;
+#[cfg(test)]
+mod tests;
+mod thin;
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_ecs::reflect::ReflectComponent;
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+use pipeline_core::{PhotonPass, PhotonSystems, Prepare, PrepareSystems};
+use pipeline_data::{CausticPhoton, DirectPhoton, IndirectPhoton};
+use plan::ThinningPlan;
+use scene_format::Range;
+
+/// Thins photons where they are dense. On the prim that carries `Render`.
+#[derive(Component, Reflect, Clone, Debug)]
+#[reflect(Component, Default)]
+pub struct PhotonThinning {
+    /// Photons of a map that are enough within the square that a pixel of the film covers on a surface which faces the camera.
+    /// Where there are more, some give their flux to others and go. Higher: sharper light, more memory and time; lower:
+    /// smoother light. Estimates of `nearest` photons are not narrower than √(`nearest` / (π `density`)) pixels then.
+    #[reflect(@Range::above(0.0))]
+    pub density: f32,
+}
+
+impl Default for PhotonThinning {
+    fn default() -> Self {
+        Self { density: 4.0 }
+    }
+}
+
+/// Where this stage works.
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct PhotonThinningSystems;
+
+/// Adds the thinning of photons.
+pub struct PhotonThinningPlugin;
+
+impl Plugin for PhotonThinningPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<PhotonThinning>()
+            .add_systems(
+                Prepare,
+                plan::plan_thinning
+                    .in_set(PrepareSystems::PrepareStages)
+                    .in_set(PhotonThinningSystems),
+            )
+            .add_systems(
+                PhotonPass,
+                (
+                    thin::thin_photons::<DirectPhoton>,
+                    thin::thin_photons::<CausticPhoton>,
+                    thin::thin_photons::<IndirectPhoton>,
+                )
+                    .chain()
+                    .in_set(PhotonSystems::RevisePhotons)
+                    .in_set(PhotonThinningSystems)
+                    .run_if(resource_exists::<ThinningPlan>),
+            );
+    }
+}
