@@ -160,15 +160,18 @@ impl Sites<'_> {
                 let position = self.tree.position(at as u32);
                 let error = position_error(position);
                 let accept = |slot: u32, offset: Vec3, dist_sq: f32| {
-                    slot != at as u32
-                        && self.is_beside(at, self.normals[slot as usize], error * error, offset, dist_sq)
+                    slot != at as u32 && self.is_beside(at, self.normals[slot as usize], error * error, offset, dist_sq)
                 };
                 let reach = self.reach[at];
                 // As in the density estimate: the triangle inequality bounds the radius, which changes the cost alone.
                 let bound = last.map_or(f32::INFINITY, |(place, radius): (Vec3, f32)| {
                     (radius + place.distance(position)) * ROUNDED_UP
                 });
-                let mut find = |bound| self.tree.nearest_where(position, NEAREST, bound, accept, &mut scratch).kth();
+                let mut find = |bound| {
+                    self.tree
+                        .nearest_where(position, NEAREST, bound, accept, &mut scratch)
+                        .kth()
+                };
                 let kth = find(bound.min(reach)).or_else(|| (bound < reach).then(|| find(reach)).flatten());
                 last = kth.map(|kth| (position, kth.dist_sq.sqrt()));
                 kth.map_or(1.0, |kth| (kth.dist_sq / (reach * reach)).clamp(LEAST_SHARE, 1.0))
@@ -178,7 +181,9 @@ impl Sites<'_> {
 
     /// The slot that the flux of each goes to: its own where it is kept.
     fn receivers(&self, is_kept: &[bool]) -> Result<Vec<u32>, PhotonTreeError> {
-        let kept: Vec<u32> = (0..is_kept.len() as u32).filter(|slot| is_kept[*slot as usize]).collect();
+        let kept: Vec<u32> = (0..is_kept.len() as u32)
+            .filter(|slot| is_kept[*slot as usize])
+            .collect();
         let thinned = PhotonTree::from_fn(kept.len(), |row| self.tree.position(kept[row]))?;
         let slot_of = |found: u32| kept[thinned.rows()[found as usize] as usize];
         let (thinned, slot_of) = (&thinned, &slot_of);
@@ -191,7 +196,13 @@ impl Sites<'_> {
                 let position = self.tree.position(at as u32);
                 let error = position_error(position);
                 let accept = |found: u32, offset: Vec3, dist_sq: f32| {
-                    self.is_beside(at, self.normals[slot_of(found) as usize], error * error, offset, dist_sq)
+                    self.is_beside(
+                        at,
+                        self.normals[slot_of(found) as usize],
+                        error * error,
+                        offset,
+                        dist_sq,
+                    )
                 };
                 let nearest = thinned.nearest_where(position, 1, self.reach[at], accept, &mut scratch);
                 nearest.kth().map_or(at as u32, |nearest| slot_of(nearest.slot))

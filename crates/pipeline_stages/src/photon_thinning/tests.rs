@@ -80,7 +80,10 @@ fn what_is_enough_follows_from_the_pixels() {
     for distance in [0.5, 1.0, 8.0_f32] {
         let expected = 3.0 / (pixel * distance).powi(2);
         let density = plan.most_density(Vec3::new(0.0, 0.0, 2.0 - distance));
-        assert!((density / expected - 1.0).abs() < 1e-3, "{density} instead of {expected}");
+        assert!(
+            (density / expected - 1.0).abs() < 1e-3,
+            "{density} instead of {expected}"
+        );
     }
     assert_eq!(plan.most_density(Vec3::new(0.0, 0.0, 2.0)), f32::INFINITY);
 }

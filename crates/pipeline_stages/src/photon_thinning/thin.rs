@@ -45,7 +45,9 @@ pub(super) fn thin_photons<M: PhotonMarker>(
         Ok(thinned) => thinned,
         Err(error) => {
             let kind = M::KIND.name();
-            report.warn(format!("warning[photon-thinning]: {kind} photons are not thinned: {error}"));
+            report.warn(format!(
+                "warning[photon-thinning]: {kind} photons are not thinned: {error}"
+            ));
             return;
         }
     };
