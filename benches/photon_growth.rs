@@ -25,8 +25,8 @@ use transport::{
 };
 
 const SIZES: [usize; 4] = [10_000, 100_000, 1_000_000, 10_000_000];
-/// Lookups along each side of the film.
-const SIDE: u32 = 64;
+/// Lookups along each side of the film: one a pixel, so that neighbours share memory as they do in a render.
+const SIDE: u32 = 256;
 /// Paths that one task traces.
 const TASK_PATHS: u32 = 4096;
 const MOST_EVENTS: u32 = 64;
@@ -222,7 +222,7 @@ fn gather(criterion: &mut Criterion) {
         let name = format!("photon_growth/gather/k{nearest}");
         let mut group = criterion.benchmark_group(&name);
         group
-            .sample_size(20)
+            .sample_size(10)
             .throughput(Throughput::Elements(vertices.len() as u64));
         let mut growth = Growth::default();
         for map in &maps {

@@ -17,11 +17,17 @@ fn file(label: &str, kind: &str) -> PathBuf {
 }
 
 /// Starts a render with these fields of `/Render`; its profile goes to a file of its label.
-fn start(scene: &str, threads: u32, label: &str, fields: &[&str]) -> Child {
+fn start(scene: &str, threads: u32, samples: u32, label: &str, fields: &[&str]) -> Child {
     Command::new(env!("CARGO_BIN_EXE_pipeline"))
         .arg("run")
         .arg(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(scene))
-        .args(["--quiet", "--samples", "32", "--threads", &threads.to_string()])
+        .args([
+            "--quiet",
+            "--samples",
+            &samples.to_string(),
+            "--threads",
+            &threads.to_string(),
+        ])
         .args(
             fields
                 .iter()
@@ -62,15 +68,16 @@ fn print(name: &str, mut ratios: Vec<f64>) {
 }
 
 fn paths() {
+    const SAMPLES: u32 = 32;
     for scene in [
         "tests/references/cornell/scene.ron",
         "tests/references/cornell_glass/scene.ron",
     ] {
         let ratios = (0..ROUNDS).map(|_| {
             let started = Instant::now();
-            let together = wait(vec![start(scene, 2, "both", &[])], started);
+            let together = wait(vec![start(scene, 2, SAMPLES, "both", &[])], started);
             let started = Instant::now();
-            let apart = [start(scene, 1, "first", &[]), start(scene, 1, "second", &[])];
+            let apart = ["first", "second"].map(|label| start(scene, 1, SAMPLES, label, &[]));
             // Two processes make two pictures.
             wait(apart.into(), started) / (2.0 * together)
         });
@@ -80,6 +87,7 @@ fn paths() {
 
 /// The systems of photon maps, each by its own time: the rest of a render hides them.
 fn photons() {
+    const SAMPLES: u32 = 8;
     const SCENE: &str = "tests/references/cornell_glass/scene.ron";
     const FIELDS: [&str; 6] = [
         "LightTransport.direct=PhotonMap",
@@ -98,11 +106,9 @@ fn photons() {
     let mut ratios = [const { Vec::new() }; SYSTEMS.len()];
     for _ in 0..ROUNDS {
         let started = Instant::now();
-        wait(vec![start(SCENE, 2, "both", &FIELDS)], started);
-        wait(
-            vec![start(SCENE, 1, "first", &FIELDS), start(SCENE, 1, "second", &FIELDS)],
-            started,
-        );
+        wait(vec![start(SCENE, 2, SAMPLES, "both", &FIELDS)], started);
+        let apart = ["first", "second"].map(|label| start(SCENE, 1, SAMPLES, label, &FIELDS));
+        wait(apart.into(), started);
         for ((_, systems), ratios) in SYSTEMS.iter().zip(&mut ratios) {
             let [both, first, second] = ["both", "first", "second"].map(|label| seconds_of(systems, label));
             ratios.push(0.5 * (first + second) / (2.0 * both));

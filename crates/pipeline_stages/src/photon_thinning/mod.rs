@@ -5,12 +5,27 @@
 //! Reads the camera and stored photons. Removes some of these entities and writes the flux of the others.
 //! Counters: `photon_thinning/photons removed`.
 //!
-//! Caustics gather most photons in a few bright places, where they cost memory and time and show nothing that a pixel could. There
-//! only as many stay as are asked for, each with the flux of those that went around it, so that the memory of a map grows no further
-//! once every lit place has its share, and many photons can be traced for the sake of dim ones. What is stored is
-//! what the maps, `pipeline photons` and files of photons have; photons taken from a file are not thinned again.
+//! Caustics gather most photons in a few bright places. There only as many stay as are asked for, each with the flux of those
+//! that went around it, so that maps and files of photons grow no further once every lit place has its share. What is stored
+//! is what the maps, `pipeline photons` and files of photons have; photons taken from a file are not thinned again.
 //!
-//! Estimates keep their number of photons, hence are wider where it was thinned: less noise, more blur.
+//! Estimates keep their number of photons, hence are wider where it was thinned: it is `nearest` raised where photons are
+//! dense, for nothing. That is what it is good for: less noise in bright places. It does not sharpen anything.
+//! `scenes/ring.ron` at 256×256, a million caustic photons, trimmed relMSE of the caustic against 48 million in progressive
+//! maps, time of lookups on one thread:
+//!
+//! | `nearest` | `density` | photons in the map | lookup | relMSE |
+//! |---|---|---|---|---|
+//! | 50 | – | 1,000,000 | 1.55 µs | 0.015 |
+//! | 50 | 16 | 413,000 | 1.45 µs | 0.060 |
+//! | 50 | 4 | 162,000 | 1.31 µs | 0.375 |
+//! | 200 | – | 1,000,000 | 3.51 µs | 0.111 |
+//! | 500 | – | 1,000,000 | 7.10 µs | 0.349 |
+//! | 50 | – | 202,000 | 1.44 µs | 0.149 |
+//!
+//! So it does not pay there: blur at the edge of the light is most of the error, and as many photons traced as a thinned map
+//! keeps do as well. Thinning takes about as long as tracing. All photons are stored before, so the peak of memory is
+//! higher by an eighth, not lower; what gets smaller is the map and the file.
 //!
 //! Limits: pixels are those of the camera, also for what mirrors or gather rays see; a photon that takes over flux keeps its
 //! own direction.
