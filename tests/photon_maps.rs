@@ -211,8 +211,9 @@ fn count_in(cloud: &str) -> usize {
 
 #[test]
 fn thinned_photons_are_fewer_and_shine_alike() {
-    /// What the mean of an image may be off by: photons cross the rims of discs, and bright places are blurred further.
-    const MEAN: f64 = 0.01;
+    /// What the mean of an image may be off by: wider discs lose more light over the edges of the floor and of caustics,
+    /// and each loses about half of the flux that the photon on its rim stands for, 1 % of 50.
+    const MEAN: f64 = 0.05;
     let glass = scene("cornell_glass");
     let folder = tempfile::tempdir().expect("a folder for photons");
     let fields = [&SMALL[..2], &[CAUSTIC, "/Render.CausticPhotonMap.photons=30000"]].concat();

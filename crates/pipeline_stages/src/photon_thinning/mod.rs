@@ -24,11 +24,16 @@
 //! | 50 | – | 202,000 | 1.44 µs | 0.149 |
 //!
 //! So it does not pay there: blur at the edge of the light is most of the error, and as many photons traced as a thinned map
-//! keeps do as well. Thinning takes about as long as tracing. All photons are stored before, so the peak of memory is
-//! higher by an eighth, not lower; what gets smaller is the map and the file.
+//! keeps do as well. In `tests/references/ring` light lies outside of the ring as well, and there it does: of a million photons a
+//! density of 1 leaves 64,000, with a trimmed relMSE against the reference of 0.0082 and 0.38 µs a lookup; 52,000 photons
+//! without thinning have 0.0142 and 0.84 µs, the whole million 0.0071 and 0.97 µs.
+//!
+//! Thinning takes about as long as tracing. All photons are stored before, so the peak of memory is higher by an eighth, not
+//! lower; what gets smaller is the map and the file.
 //!
 //! Limits: pixels are those of the camera, also for what mirrors or gather rays see; a photon that takes over flux keeps its
-//! own direction.
+//! own direction; an estimate misses about half of the flux of the photon on its rim, which stands for others now: 1 % where
+//! `nearest` is 50, less where it is more.
 //! Source: Suykens and Willems, "Density Control for Photon Maps", Rendering Workshop 2000.
 
 mod plan;
