@@ -56,6 +56,7 @@ pub fn describe_schedules(app: &mut App) -> Result<Vec<ScheduleDescription>, Str
                 PhotonSystems::EmitPhotons,
                 PhotonSystems::TracePhotons,
                 PhotonSystems::StorePhotons,
+                PhotonSystems::RevisePhotons,
                 PhotonSystems::BuildPhotonMaps,
                 PhotonSystems::DeriveFromMaps,
             ]),

@@ -48,6 +48,7 @@ impl Plugin for CorePlugin {
                 PhotonSystems::EmitPhotons,
                 PhotonSystems::TracePhotons,
                 PhotonSystems::StorePhotons,
+                PhotonSystems::RevisePhotons,
                 PhotonSystems::BuildPhotonMaps,
                 PhotonSystems::DeriveFromMaps,
             )

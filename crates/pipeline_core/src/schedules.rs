@@ -60,6 +60,8 @@ pub enum PhotonSystems {
     TracePhotons,
     /// After it, stored photons are entities.
     StorePhotons,
+    /// After it, whatever stages change about stored photons is done: they are as the maps will have them.
+    RevisePhotons,
     /// After it, photon maps can be queried.
     BuildPhotonMaps,
     /// After it, whatever stages compute from photon maps beforehand stands.

@@ -13,6 +13,7 @@
 //! | [`motion_blur`] | the time of each camera ray, and a camera that moves |
 //! | [`depth_of_field`] | camera rays through a lens |
 //! | [`photon_map`] | photons: emitted, stored as entities in three maps, gathered |
+//! | [`photon_thinning`] | fewer photons where a picture has no use for more, with all their flux |
 //! | [`final_gather`] | indirect light by rays that read the photon maps |
 //! | [`path_guiding`] | directions of paths, drawn to where photons come from |
 //! | [`path_tracing`] | intersection, emission, direct light, scattering |
@@ -40,6 +41,7 @@ pub mod motion_blur;
 pub mod path_guiding;
 pub mod path_tracing;
 pub mod photon_map;
+pub mod photon_thinning;
 pub mod tables;
 
 /// All stages of the renderer.
@@ -55,6 +57,7 @@ impl Plugin for DefaultStages {
             motion_blur::MotionBlurPlugin,
             depth_of_field::DepthOfFieldPlugin,
             photon_map::PhotonMapPlugin,
+            photon_thinning::PhotonThinningPlugin,
             final_gather::FinalGatherPlugin,
             path_guiding::PathGuidingPlugin,
             path_tracing::PathTracingPlugin,
@@ -70,6 +73,7 @@ impl Plugin for DefaultStages {
                 path_guiding::PathGuidingSystems,
                 final_gather::FinalGatherSystems,
                 photon_map::PhotonMapSystems,
+                photon_thinning::PhotonThinningSystems,
                 camera::CameraSystems,
                 depth_of_field::DepthOfFieldSystems,
             )

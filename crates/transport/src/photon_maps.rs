@@ -192,7 +192,7 @@ impl PhotonMaps {
 }
 
 /// Bound on the error of a position that was stored in single precision, metres.
-fn position_error(position: Vec3) -> f32 {
+pub(crate) fn position_error(position: Vec3) -> f32 {
     4.0 * f32::EPSILON * position.abs().max_element()
 }
 

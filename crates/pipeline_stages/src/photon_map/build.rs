@@ -3,10 +3,13 @@ use bevy_ecs::prelude::*;
 use glam::Vec3;
 use pipeline_core::{RenderClock, Report, record_items};
 use pipeline_data::{BuiltPhotonMaps, Photon, PhotonMarker, TransportScene};
-use radiometry::unpack_direction;
+use radiometry::{Rgb, unpack_direction};
 use rayon::prelude::*;
 use spatial::{PhotonTree, PhotonTreeError};
 use transport::{DensitySettings, PhotonColumns, PhotonMap, PhotonSurface, Walls};
+
+/// Photons whose columns one task copies.
+const TASK_PHOTONS: usize = 4096;
 
 /// Builds the tree over the photon entities of one map and copies what the estimate reads into its order.
 pub(super) fn build_photon_map<M: PhotonMarker>(
@@ -74,13 +77,26 @@ pub(super) fn finish_photons(mut commands: Commands, mut clock: ResMut<RenderClo
 /// A photon whose position is not finite, or more photons than a tree can hold.
 pub fn photon_map(photons: &[Photon], density: DensitySettings) -> Result<PhotonMap, PhotonTreeError> {
     let tree = PhotonTree::from_fn(photons.len(), |row| Vec3::from_array(photons[row].position))?;
-    let rows = || tree.rows().iter().map(|row| &photons[*row as usize]);
-    let columns = PhotonColumns {
-        flux: rows().map(|p| p.flux).collect(),
-        direction: rows().map(|p| p.direction).collect(),
-        surface: rows()
-            .map(|p| PhotonSurface::open(unpack_direction(p.normal)))
-            .collect(),
+    let mut columns = PhotonColumns {
+        flux: vec![Rgb::BLACK; photons.len()],
+        direction: vec![0; photons.len()],
+        surface: vec![PhotonSurface::open(Vec3::ZERO); photons.len()],
     };
+    // Photons lie in memory as they were traced, so each is a cache miss: once for all columns, and on all threads.
+    (
+        tree.rows().par_chunks(TASK_PHOTONS),
+        columns.flux.par_chunks_mut(TASK_PHOTONS),
+        columns.direction.par_chunks_mut(TASK_PHOTONS),
+        columns.surface.par_chunks_mut(TASK_PHOTONS),
+    )
+        .into_par_iter()
+        .for_each(|(rows, flux, direction, surface)| {
+            for (slot, row) in rows.iter().enumerate() {
+                let photon = &photons[*row as usize];
+                flux[slot] = photon.flux;
+                direction[slot] = photon.direction;
+                surface[slot] = PhotonSurface::open(unpack_direction(photon.normal));
+            }
+        });
     Ok(PhotonMap { tree, columns, density })
 }

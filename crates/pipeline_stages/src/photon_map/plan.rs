@@ -289,8 +289,8 @@ fn size_passes(emission: &mut EmissionPlan, plan: &PhotonPlan, scene: &transport
     let batch = emission.aim.emit_batch(&scene.lights, plan.seed, 0, 0);
     let landed = emission.aim.trace_batch(scene, &batch, kinds, plan, 0, 0);
     for map in &mut emission.maps {
-        let count = landed.iter().filter(|(kind, _)| *kind == map.kind).count();
-        map.batches = Some(map.batches_for(count));
+        let counts = landed.iter().map(|task| task[map.kind as usize].len());
+        map.batches = Some(map.batches_for(counts.sum()));
     }
 }
 

@@ -14,7 +14,10 @@ use transport::{
 pub(super) const BATCH_PATHS: u32 = 1 << 14;
 
 /// Photon paths that one task follows.
-const TASK_PATHS: usize = 512;
+const TASK_PATHS: usize = 128;
+
+/// Photons of one task that landed, by [`MapKind`], each in (path, bounce) order.
+pub(super) type Landed = [Vec<Photon>; MapKind::COUNT];
 
 /// At most this many times the wanted photons are emitted.
 const MAX_EMITTED_RATIO: u64 = 100;
@@ -87,8 +90,8 @@ impl Aim {
             .collect()
     }
 
-    /// Follows a batch to where its photons land: those of kinds that are `wanted`, in (path, bounce) order. Their flux is
-    /// not divided by the number emitted.
+    /// Follows a batch to where its photons land: those of kinds that are `wanted`, task by task in the order of their paths.
+    /// Their flux is not divided by the number emitted.
     pub(super) fn trace_batch(
         &self,
         scene: &Scene,
@@ -97,22 +100,20 @@ impl Aim {
         plan: &PhotonPlan,
         pass: u32,
         first: u32,
-    ) -> Vec<(MapKind, Photon)> {
+    ) -> Vec<Landed> {
         let follow = |(task, photons): (usize, &[Option<EmittedPhoton>])| {
-            let mut landed = Vec::new();
+            let mut landed = Landed::default();
             for (i, photon) in photons.iter().enumerate() {
                 let Some(photon) = photon else { continue };
                 let path = first + (task * TASK_PATHS + i) as u32;
                 let stream = self.stream(plan.seed, pass, path);
                 trace_photon(scene, photon, wanted, plan.max_depth, path, &stream, |deposit| {
-                    landed.push((deposit.kind, Photon::from(deposit)));
+                    landed[deposit.kind as usize].push(Photon::from(deposit));
                 });
             }
             landed
         };
-        let tasks = batch.par_chunks(TASK_PATHS).enumerate();
-        let landed: Vec<Vec<(MapKind, Photon)>> = tasks.map(follow).collect();
-        landed.into_iter().flatten().collect()
+        batch.par_chunks(TASK_PATHS).enumerate().map(follow).collect()
     }
 
     fn stream(&self, seed: u64, pass: u32, path: u32) -> SampleStream {
@@ -213,11 +214,11 @@ impl EmissionRun {
     }
 
     /// Takes in what has landed of a batch, and closes the maps that have enough.
-    pub(super) fn take_in(&mut self, landed: Vec<(MapKind, Photon)>) {
+    pub(super) fn take_in(&mut self, landed: &[Landed]) {
         self.emitted += BATCH_PATHS;
-        for (kind, photon) in landed {
-            if let Some(map) = self.maps.iter_mut().find(|map| map.plan.kind == kind) {
-                map.photons.push(photon);
+        for map in &mut self.maps {
+            for task in landed {
+                map.photons.extend_from_slice(&task[map.plan.kind as usize]);
             }
         }
         for map in self.maps.iter_mut().filter(|map| map.emitted.is_none()) {

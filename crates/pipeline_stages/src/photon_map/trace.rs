@@ -34,7 +34,7 @@ pub(super) fn trace_photons(
         emission.pass,
         emission.emitted,
     );
-    emission.take_in(landed);
+    emission.take_in(&landed);
     emitted.0.add(batch.len() as u64);
     record_items(batch.len());
     if emission.wanted().is_empty()
