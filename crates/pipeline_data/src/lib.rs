@@ -9,6 +9,7 @@
 mod mesh_store;
 mod photon;
 mod photon_file;
+mod pixel_choice;
 mod request;
 mod scene;
 mod settings;
@@ -21,6 +22,7 @@ pub use photon::{
     BuiltPhotonMaps, CausticPhoton, DirectPhoton, IndirectPhoton, Photon, PhotonDemand, PhotonMarker, ProgressivePasses,
 };
 pub use photon_file::{PhotonFileError, PhotonsOfKind, read_photons, write_photons};
+pub use pixel_choice::{ChosenBlocks, PixelChoice};
 pub use request::RenderRequest;
 pub use scene::{
     Acceleration, CameraFrame, ComposedScene, EnvironmentMaps, InstancePrims, PrimIndex, SceneOrigin, ShutterInterval,

@@ -227,6 +227,26 @@ impl Methods {
         max_depth: u32::MAX,
     };
 
+    /// The same terms without bias: each that is not switched off is traced.
+    #[must_use]
+    pub fn traced(self) -> Self {
+        Self {
+            direct: match self.direct {
+                DirectMethod::Off => DirectMethod::Off,
+                _ => DirectMethod::SampleLights,
+            },
+            caustic: match self.caustic {
+                CausticMethod::Off => CausticMethod::Off,
+                _ => CausticMethod::Trace,
+            },
+            indirect: match self.indirect {
+                IndirectMethod::Off => IndirectMethod::Off,
+                _ => IndirectMethod::PathTrace,
+            },
+            ..self
+        }
+    }
+
     /// True when this layer is not switched off.
     #[must_use]
     pub fn shows(&self, layer: Layer) -> bool {
@@ -454,6 +474,28 @@ mod tests {
                     methods.may_contribute(class_of(events)) || !could,
                     "E{events} under {methods:?}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn traced_methods_show_the_same_layers() {
+        for direct in [DirectMethod::SampleLights, DirectMethod::PhotonMap, DirectMethod::Off] {
+            for caustic in [CausticMethod::PhotonMap, CausticMethod::Trace, CausticMethod::Off] {
+                for indirect in [IndirectMethod::FinalGather, IndirectMethod::Off] {
+                    let methods = Methods {
+                        direct,
+                        caustic,
+                        indirect,
+                        ..Methods::TRACED
+                    };
+                    let traced = methods.traced();
+                    for layer in Layer::ALL {
+                        assert_eq!(traced.shows(layer), methods.shows(layer), "{layer:?} under {methods:?}");
+                    }
+                    assert!(MapKind::ALL.iter().all(|kind| !traced.reads_map(*kind)));
+                    assert!(!traced.indirect.replaces_paths());
+                }
             }
         }
     }
