@@ -120,12 +120,7 @@ pub(crate) fn test_blocks(image: &Measured, reference: &Measured, side: usize) -
 }
 
 /// Compares a sum of pixels.
-fn statistic(
-    image: &Measured,
-    reference: &Measured,
-    pixels: impl Iterator<Item = usize>,
-    channel: usize,
-) -> Welch {
+fn statistic(image: &Measured, reference: &Measured, pixels: impl Iterator<Item = usize>, channel: usize) -> Welch {
     let mut sum = Welch::default();
     for pixel in pixels {
         let theirs = f64::from(reference.mean.pixels[pixel][channel]);
@@ -135,7 +130,10 @@ fn statistic(
             (own, side.freedom)
         });
         sum.add(difference, variances);
-        sum.add(0.0, [((ROUNDING * theirs).powi(2), f64::INFINITY), (0.0, f64::INFINITY)]);
+        sum.add(
+            0.0,
+            [((ROUNDING * theirs).powi(2), f64::INFINITY), (0.0, f64::INFINITY)],
+        );
     }
     sum
 }

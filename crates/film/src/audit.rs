@@ -205,10 +205,13 @@ impl Measured {
     }
 
     /// True when no few samples decide.
-    fn is_decided(&self, by_chance: bool) -> bool {
-        // A light that is looked for and never seen is not there.
-        let is_known_black = self.means[1] == 0.0 && !by_chance;
-        is_known_black || self.effective >= LEAST_EFFECTIVE && self.dominance <= MOST_DOMINANT
+    fn is_decided(&self, by_chance: bool, tolerated: f64) -> bool {
+        // A light that is looked for and never seen is not there; and what is off by so little is no defect, whatever makes
+        // it so.
+        let is_known_black = self.means[1] == 0.0;
+        let is_close = self.welch.difference().abs() + 3.0 * self.welch.standard_error() <= tolerated;
+        !by_chance && (is_known_black || is_close)
+            || self.effective >= LEAST_EFFECTIVE && self.dominance <= MOST_DOMINANT
     }
 }
 
@@ -263,20 +266,20 @@ fn judge(
     for channel in 0..3 {
         let beauty = &measured[0][channel];
         let scale = beauty.means[1].max(dark[channel]);
+        let tolerated = options.tolerance * scale;
         let is_by_chance = |layer: &Option<usize>| layer.is_some_and(|l| options.by_chance.get(l) == Some(&true));
         // What is not known of a layer is not known of the sum.
         let unknown = layers.iter().zip(measured).skip(1).any(|(layer, measured)| {
             let measured = &measured[channel];
             let largest = measured.means[0].max(measured.means[1]);
-            largest > options.tolerance * scale && !measured.is_decided(is_by_chance(layer))
+            largest > tolerated && !measured.is_decided(is_by_chance(layer), tolerated)
         });
         for (layer, measured) in layers.iter().zip(measured) {
             let measured = &measured[channel];
             if !measured.has_light() {
                 continue;
             }
-            let tolerated = options.tolerance * scale;
-            let is_decided = measured.is_decided(is_by_chance(layer)) && !(layer.is_none() && unknown);
+            let is_decided = measured.is_decided(is_by_chance(layer), tolerated) && !(layer.is_none() && unknown);
             tests.push(AuditTest {
                 block,
                 layer: *layer,

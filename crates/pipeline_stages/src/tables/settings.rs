@@ -128,7 +128,11 @@ fn settings(
     let is_chosen = request.pixels.is_some();
     RenderSettings {
         methods: if request.traced { methods.traced() } else { methods },
-        samples: if is_chosen { samples.max(film::LEAST_AUDIT_SAMPLES) } else { samples },
+        samples: if is_chosen {
+            samples.max(film::LEAST_AUDIT_SAMPLES)
+        } else {
+            samples
+        },
         passes: render.passes,
         seed: request.seed.unwrap_or(render.seed),
         resolution,
