@@ -281,8 +281,8 @@ pub(crate) struct CompareArgs {
 #[command(
     after_help = "Exit codes: 0 no bias found, 1 bias found or the audit failed, 2 bad command line or bad scene, 130 \
                   interrupted.\n\
-                  The tracer cannot see everything: what hangs on a few bright samples is reported as undecided, never as \
-                  right. Photon maps are the same for all samples, so their noise is in the image for good, and counts as bias."
+                  The tracer cannot see everything: what hangs on a few bright samples, or may be light that no ray has met \
+                  yet, counts as undecided. Photon maps are the same for all samples, so their noise is in the image for good, and counts as bias."
 )]
 pub(crate) struct AuditArgs {
     #[command(flatten)]

@@ -12,7 +12,7 @@ use crate::summary;
 use crate::terminal::{print, say};
 use film::{Audit, AuditOptions, Film, PixelBlock};
 use pipeline_core::{Cancellation, Outcome, Progress, RenderClock, Report};
-use pipeline_data::{ChosenBlocks, FilmSums, PixelChoice, RenderRequest, RenderSettings};
+use pipeline_data::{ChosenBlocks, FilmSums, PixelChoice, RenderRequest, RenderSettings, TransportScene};
 use transport::Layer;
 
 /// An audit that was made, and what it was made of.
@@ -83,6 +83,10 @@ struct Part {
     blocks: Vec<PixelBlock>,
     seed: u64,
     warnings: Vec<String>,
+    /// Whether any surface has an S lobe.
+    has_specular: bool,
+    /// The largest radiance that a ray may meet.
+    brightest: f64,
 }
 
 fn own_request(options: &AuditArgs) -> RenderRequest {
@@ -132,10 +136,11 @@ fn render(
     summary::tell_trouble(&app);
     let warnings = app.world().resource::<Report>().warnings().to_vec();
     let world = app.world_mut();
-    let (Some(film), Some(blocks), Some(settings)) = (
+    let (Some(film), Some(blocks), Some(settings), Some(scene)) = (
         world.remove_resource::<FilmSums>(),
         world.remove_resource::<ChosenBlocks>(),
         world.get_resource::<RenderSettings>(),
+        world.get_resource::<TransportScene>(),
     ) else {
         return Err(Failure::failed("nothing was rendered"));
     };
@@ -145,16 +150,20 @@ fn render(
         blocks: blocks.0,
         seed: settings.seed,
         warnings,
+        has_specular: !scene.0.specular_targets().is_empty(),
+        brightest: scene.0.lights.brightest().into(),
     })
 }
 
 fn judge(options: &AuditArgs, ours: Part, traced: Part) -> Result<Judged, Failure> {
-    // Hits alone find what S lobes lead to: no light is looked for through them.
-    let by_chance = |layer: &Layer| matches!(layer, Layer::Caustic | Layer::Specular);
+    // Hits alone find light that comes over S lobes; it is looked for at D lobes only.
+    let by_chance =
+        |layer: &Layer| traced.has_specular && matches!(layer, Layer::Caustic | Layer::Specular | Layer::Indirect);
     let how = AuditOptions {
         significance: 1.0 - options.confidence,
         tolerance: options.tolerance,
         by_chance: Layer::ALL[..FilmSums::LAYERS].iter().map(by_chance).collect(),
+        brightest: traced.brightest,
     };
     match film::audit(&ours.film, &traced.film, &ours.blocks, &how) {
         Some(audit) => Ok(Judged {

@@ -103,8 +103,8 @@ fn verdict(audit: &Audit, options: &AuditArgs) -> String {
             .collect();
         let _ = writeln!(
             text,
-            "{undecided} means hang on a few bright samples and say nothing ({}): what finds its light by chance needs a \
-             larger --budget",
+            "{undecided} means say nothing ({}): they hang on a few bright samples, or on light that no ray may have met yet; \
+             a larger --budget decides more",
             in_layers.join(", ")
         );
     }

@@ -43,14 +43,21 @@ fn photons_that_leak_through_a_wall_are_found() {
     let ran = folder.run(&format!("{QUICK} {leaking} -o map.exr -o map.png"));
     assert_eq!(ran.code, Some(1), "{}{}", ran.stdout, ran.stderr);
     assert!(ran.stdout.contains("biased: "), "{}", ran.stdout);
-    assert!(ran.stderr.contains("error: the image is biased by more than 1 %"), "{}", ran.stderr);
+    assert!(
+        ran.stderr.contains("error: the image is biased by more than 1 %"),
+        "{}",
+        ran.stderr
+    );
     assert_whole_png(&folder.bytes("map.png"));
     let map = film::read_exr(&folder.path("map.exr")).unwrap();
     for channel in ["R", "ours.G", "traced.B", "error.R", "chance.G"] {
         let values = map.channel(channel).unwrap();
         assert!(values.iter().any(|value| *value != 0.0), "{channel}");
         // 24 of 48 blocks.
-        assert!(values.iter().filter(|value| **value == 0.0).count() >= 64 * 48 / 2, "{channel}");
+        assert!(
+            values.iter().filter(|value| **value == 0.0).count() >= 64 * 48 / 2,
+            "{channel}"
+        );
     }
     // Nothing is wrong with what nobody can see.
     let blind = folder.succeed(&format!("{QUICK} {leaking} --tolerance 99%"));
@@ -81,7 +88,13 @@ fn what_cannot_be_audited_is_refused() {
     let folder = Folder::with_scene(ROOM);
     let ran = folder.run(&format!("{QUICK} --set /Render.Render.camera=\"/None\""));
     assert_eq!(ran.code, Some(2), "{}", ran.stderr);
-    for bad in ["--tolerance 2", "--confidence 10%", "--blocks 0", "--traced-samples 4", "-o a.jpg"] {
+    for bad in [
+        "--tolerance 2",
+        "--confidence 10%",
+        "--blocks 0",
+        "--traced-samples 4",
+        "-o a.jpg",
+    ] {
         assert_eq!(folder.run(&format!("audit scene.ron {bad}")).code, Some(2), "{bad}");
     }
     // Many pixels and no time: the first pass takes too few samples.

@@ -110,7 +110,7 @@ pub(crate) fn test_blocks(image: &Measured, reference: &Measured, side: usize) -
         })
         .collect();
     let tested = statistics.len();
-    let level = 1.0 - (1.0 - SIGNIFICANCE).powf(1.0 / tested as f64);
+    let level = 1.0 - radiometry::math::powf_f64(1.0 - SIGNIFICANCE, 1.0 / tested as f64);
     Verdict {
         side,
         rms: (statistics.iter().map(|found| found.t(0.0).powi(2)).sum::<f64>() / tested as f64).sqrt(),

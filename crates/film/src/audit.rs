@@ -27,8 +27,10 @@ pub struct AuditOptions {
     /// Difference that is no defect, relative to the traced value, from 0. Of a block in the dark it is relative to
     /// [`DARK`] of the mean of all blocks.
     pub tolerance: f64,
-    /// For each layer, whether a tracer finds its light by chance alone: where it found none, there may be some.
+    /// For each layer, whether a tracer finds some of its light by chance alone: where it found none, there may be some.
     pub by_chance: Vec<bool>,
+    /// The most that one sample can bring of such light; infinite where no number of samples finds it.
+    pub brightest: f64,
 }
 
 /// Blocks darker than this share of the mean count as if they had it.
@@ -41,6 +43,9 @@ const LEAST_EFFECTIVE: f64 = 32.0;
 
 /// Share of the spread that one estimate out of hundreds may make.
 const MOST_DOMINANT: f64 = 0.25;
+
+/// Largest chance of light that all samples have missed with which a difference is judged at all.
+const MOST_UNSEEN: f64 = 1e-6;
 
 /// What was compared in one channel of one layer, over one block or over all.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,8 +68,8 @@ pub struct AuditTest {
     pub tolerated: f64,
     /// What is beyond it, in standard errors; signed.
     pub t: f64,
-    /// Chance of that by noise, corrected for the number of all tests; none where a few samples decide, so that nothing
-    /// can be said.
+    /// Chance of that by noise, corrected for the number of all tests; none where nothing can be said: a few samples
+    /// decide, or ours is brighter by light that the tracer may not have met yet.
     pub chance: Option<f64>,
 }
 
@@ -173,6 +178,8 @@ fn correct(tests: &mut [AuditTest]) {
 struct Measured {
     means: [f64; 2],
     welch: Welch,
+    /// Of the traced film.
+    samples: f64,
     /// Least of both films.
     effective: f64,
     /// Largest of both films.
@@ -184,9 +191,10 @@ impl Measured {
         const FREEDOM: f64 = BATCHES as f64 - 1.0;
         let mut welch = Welch::default();
         let mut sides = [Side::default(); 2];
-        let mut count = 0.0;
+        let (mut count, mut samples) = (0.0, 0.0);
         for storage in pixels {
             count += 1.0;
+            samples += f64::from(films[1].sample_count(storage));
             let found = films.map(|film| film.estimate(storage, layer, channel));
             let variances = found.map(|found| (found.variance, FREEDOM));
             welch.add(found[0].mean - found[1].mean, variances);
@@ -195,9 +203,37 @@ impl Measured {
         Self {
             means: sides.map(|side| side.sum / count),
             welch: welch.scaled(1.0 / count),
+            samples,
             effective: sides.iter().map(Side::effective).fold(f64::INFINITY, f64::min),
             dominance: sides.iter().map(Side::dominance).fold(0.0, f64::max),
         }
+    }
+
+    /// Chance that light which would make up for what ours is too bright by was met by no sample.
+    ///
+    /// Samples that bring at most `B` each have to come with a chance of at least `D / B` to add up to `D`, so that none of
+    /// `n` does with a chance of no more than `exp(−n D / B)`.
+    fn unseen(&self, tolerated: f64, brightest: f64) -> f64 {
+        /// Weights of lobes and of survival in roulette are about 1 at most; a safe margin.
+        const LARGEST_WEIGHT: f64 = 4.0;
+        let missing = self.welch.difference() - tolerated;
+        if missing > 0.0 {
+            libm::exp(-self.samples * missing / (LARGEST_WEIGHT * brightest))
+        } else {
+            0.0
+        }
+    }
+
+    /// Chance that noise alone makes the difference; none where that cannot be told.
+    fn chance(&self, by_chance: bool, tolerated: f64, options: &AuditOptions) -> Option<f64> {
+        let noise = self.welch.p_value(tolerated);
+        let unseen = match by_chance {
+            true => self.unseen(tolerated, options.brightest),
+            false => 0.0,
+        };
+        let is_decided =
+            self.is_decided(by_chance, tolerated) && (unseen < MOST_UNSEEN || noise > options.significance);
+        is_decided.then(|| (noise + unseen).min(1.0))
     }
 
     fn has_light(&self) -> bool {
@@ -210,7 +246,9 @@ impl Measured {
         // it so.
         let is_known_black = self.means[1] == 0.0;
         let is_close = self.welch.difference().abs() + 3.0 * self.welch.standard_error() <= tolerated;
-        !by_chance && (is_known_black || is_close)
+        let is_faint = self.means[0].max(self.means[1]) <= tolerated;
+        is_faint
+            || !by_chance && (is_known_black || is_close)
             || self.effective >= LEAST_EFFECTIVE && self.dominance <= MOST_DOMINANT
     }
 }
@@ -267,19 +305,21 @@ fn judge(
         let beauty = &measured[0][channel];
         let scale = beauty.means[1].max(dark[channel]);
         let tolerated = options.tolerance * scale;
-        let is_by_chance = |layer: &Option<usize>| layer.is_some_and(|l| options.by_chance.get(l) == Some(&true));
+        let is_by_chance = |layer: &Option<usize>| match layer {
+            Some(layer) => options.by_chance.get(*layer) == Some(&true),
+            None => options.by_chance.contains(&true),
+        };
+        let chance = |layer, measured: &Measured| measured.chance(is_by_chance(layer), tolerated, options);
         // What is not known of a layer is not known of the sum.
         let unknown = layers.iter().zip(measured).skip(1).any(|(layer, measured)| {
             let measured = &measured[channel];
-            let largest = measured.means[0].max(measured.means[1]);
-            largest > tolerated && !measured.is_decided(is_by_chance(layer), tolerated)
+            measured.means[0].max(measured.means[1]) > tolerated && chance(layer, measured).is_none()
         });
         for (layer, measured) in layers.iter().zip(measured) {
             let measured = &measured[channel];
             if !measured.has_light() {
                 continue;
             }
-            let is_decided = measured.is_decided(is_by_chance(layer), tolerated) && !(layer.is_none() && unknown);
             tests.push(AuditTest {
                 block,
                 layer: *layer,
@@ -290,7 +330,7 @@ fn judge(
                 freedom: measured.welch.freedom(),
                 tolerated,
                 t: measured.welch.t(tolerated),
-                chance: is_decided.then(|| measured.welch.p_value(tolerated)),
+                chance: chance(layer, measured).filter(|_| !(layer.is_none() && unknown)),
             });
         }
     }
