@@ -7,6 +7,7 @@
 //! It deliberately holds no formula: those are one layer down, in crates that know no ECS.
 
 mod mesh_store;
+mod patch;
 mod photon;
 mod photon_file;
 mod pixel_choice;
@@ -18,6 +19,7 @@ mod texture_store;
 pub mod vocabulary;
 
 pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
+pub use patch::{PatchDemand, RadiosityPatch, SolvedPatches};
 pub use photon::{
     BuiltPhotonMaps, CausticPhoton, DirectPhoton, IndirectPhoton, Photon, PhotonDemand, PhotonMarker, ProgressivePasses,
 };

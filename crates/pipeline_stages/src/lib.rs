@@ -14,6 +14,7 @@
 //! | [`depth_of_field`] | camera rays through a lens |
 //! | [`photon_map`] | photons: emitted, stored as entities in three maps, gathered |
 //! | [`final_gather`] | indirect light by rays that read the photon maps |
+//! | [`radiosity`] | indirect light that matt surfaces exchange, solved for patches |
 //! | [`path_guiding`] | directions of paths, drawn to where photons come from |
 //! | [`path_tracing`] | intersection, emission, direct light, scattering |
 //! | [`image`] | film, auxiliary channels, image files and checkpoints |
@@ -40,6 +41,7 @@ pub mod motion_blur;
 pub mod path_guiding;
 pub mod path_tracing;
 pub mod photon_map;
+pub mod radiosity;
 pub mod tables;
 
 /// All stages of the renderer.
@@ -56,6 +58,7 @@ impl Plugin for DefaultStages {
             depth_of_field::DepthOfFieldPlugin,
             photon_map::PhotonMapPlugin,
             final_gather::FinalGatherPlugin,
+            radiosity::RadiosityPlugin,
             path_guiding::PathGuidingPlugin,
             path_tracing::PathTracingPlugin,
             image::ImagePlugin,
@@ -69,6 +72,7 @@ impl Plugin for DefaultStages {
                 image::ImageSystems,
                 path_guiding::PathGuidingSystems,
                 final_gather::FinalGatherSystems,
+                radiosity::RadiositySystems,
                 photon_map::PhotonMapSystems,
                 camera::CameraSystems,
                 depth_of_field::DepthOfFieldSystems,
