@@ -45,7 +45,7 @@ pub struct Radiosity {
     /// Rays that look for the patches that a patch sees, and light samples: more make the light less uneven.
     #[reflect(@Range::closed(1.0, 65_536.0))]
     pub rays: u32,
-    /// Share of the exchanged light that may be missing.
+    /// Share of the exchanged light that may be estimated instead of exchanged: what comes after many reflections.
     #[reflect(@Range::closed(0.000_001, 0.5))]
     pub tolerance: f32,
 }

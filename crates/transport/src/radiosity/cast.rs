@@ -18,13 +18,14 @@ const DIRECT_STAGE: StageKey = StageKey::new("radiosity light");
 pub struct PatchRow {
     /// Row of a patch, and the form factor of this one with it, tinted by what is between; each patch once, by row.
     pub links: Vec<(u32, Rgb)>,
-    /// Irradiance by lights seen over S surfaces, W·m⁻².
-    pub caustic: Rgb,
+    /// Irradiance by lights that rays met, straight or over S surfaces, W·m⁻²; weighed against light sampling.
+    pub met: Rgb,
 }
 
 /// The irradiance of a patch by light sampling: from all lights, those of points, surfaces and the surroundings.
 ///
-/// `E = 1/N Σ L(ω) |cosθ| V / p(ω)`.
+/// `E = 1/N Σ w L(ω) |cosθ| V / p(ω)`, with `w` the power heuristic against the rays of [`cast_row`], which bring the rest:
+/// next to a lamp light sampling alone has no bounded variance.
 ///
 /// - `row`: of the patch, which its random numbers follow from.
 #[must_use]
@@ -43,7 +44,12 @@ pub(super) fn direct_irradiance(scene: &Scene, patch: &Patch, row: u32, samples:
             continue;
         }
         if let Some(left) = unblocked(scene, medium, &light.shadow_ray(&point)) {
-            sum += light.radiance * left * (cos / light.pdf);
+            let weight = if light.delta {
+                1.0
+            } else {
+                warp::power_heuristic(light.pdf, cos * FRAC_1_PI)
+            };
+            sum += light.radiance * left * (weight * cos / light.pdf);
         }
     }
     sum * (1.0 / samples as f32)
@@ -100,9 +106,9 @@ fn follow(
     found: &mut PatchRow,
     scratch: &mut PatchScratch,
 ) {
-    // Light over S surfaces counts here; light sampling knows what comes straight, and patches what is reflected.
+    // Lights count here, straight or over S surfaces; patches know what is reflected.
     const METHODS: Methods = Methods {
-        direct: DirectMethod::PhotonMap,
+        direct: DirectMethod::SampleLights,
         specular: true,
         caustic: CausticMethod::Trace,
         indirect: IndirectMethod::Radiosity,
@@ -110,7 +116,7 @@ fn follow(
     };
     loop {
         let hit = arrive(scene, &mut path, &ray);
-        let mut add = |light: Rgb| found.caustic += light * (PI * share);
+        let mut add = |light: Rgb| found.met += light * (PI * share);
         if let Some((_, emitted)) = emitted_light(scene, &METHODS, &path, &ray, hit.as_ref()) {
             add(emitted);
         }

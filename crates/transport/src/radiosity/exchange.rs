@@ -2,7 +2,6 @@ use super::cast::{PatchRow, cast_row, direct_irradiance};
 use super::field::{PatchField, PatchScratch};
 use super::solve::FormFactors;
 use crate::scene::Scene;
-use radiometry::Rgb;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -29,7 +28,8 @@ pub enum ExchangeError {
     Stopped,
 }
 
-/// Finds the irradiance that each patch gets straight from the lights.
+/// Finds the irradiance that each patch gets straight from the lights, as far as light sampling counts it; the rest comes
+/// with the form factors.
 ///
 /// - `step`: told how many patches are done, now and then; false stops.
 ///
@@ -55,7 +55,7 @@ pub fn find_direct(
     Ok(())
 }
 
-/// Finds the form factors of all patches that light can reach, and adds light over S surfaces to their direct irradiance.
+/// Finds the form factors of all patches that light can reach, and adds the lights that rays meet to their direct irradiance.
 ///
 /// Begins with the sides of surfaces that are lit directly, anywhere, and goes on to those that are seen from there: the
 /// insides of closed things take no time. Where nothing is lit directly, all sides are looked at.
@@ -103,9 +103,7 @@ pub fn find_form_factors(
         wave = wave.difference(&reached).copied().collect();
     }
     for (patch, row) in field.patches.iter_mut().zip(&rows) {
-        if row.caustic != Rgb::BLACK {
-            patch.direct += row.caustic;
-        }
+        patch.direct += row.met;
     }
     Ok(FormFactors::new(rows))
 }

@@ -16,8 +16,8 @@ pub struct FormFactors {
 pub struct Solution {
     /// Times that the light went around.
     pub rounds: u32,
-    /// Share of the reflected flux that is estimated to be missing.
-    pub missing: f64,
+    /// Share of the reflected flux that further rounds would have brought, by estimate, and that was added by it.
+    pub estimated: f64,
 }
 
 /// Rounds at most; rooms that reflect 99 % of the light are done to a thousandth after 700.
@@ -57,12 +57,12 @@ impl FormFactors {
     /// Lets light go around until no more than `tolerance` of it is missing, and writes `indirect` of all patches.
     ///
     /// `E_i ← Σ_j F_ij ρ_j (E_direct,j + E_j)`, for all patches at once; each round adds one more reflection. What the
-    /// rounds to come would add is estimated from how much less each adds than the one before.
+    /// rounds to come would add follows from how much less each adds than the one before, a geometric series in the end;
+    /// that estimate is added where the last round added, and only its own error, a small part of it, stays.
     ///
     /// Cost: one multiplication a link and round. Sums have a fixed order, so threads change no bit.
     pub fn solve(&self, field: &mut PatchField, tolerance: f64) -> Solution {
         let mut added_before = f64::INFINITY;
-        let mut total = 0.0;
         for patch in &mut field.patches {
             patch.indirect = Rgb::BLACK;
         }
@@ -77,32 +77,38 @@ impl FormFactors {
                         .sum()
                 })
                 .collect();
-            let mut now = 0.0;
-            for (patch, arrived) in field.patches.iter_mut().zip(arrived) {
-                patch.indirect = arrived;
-                now += f64::from(patch.area) * f64::from((patch.albedo * arrived).mean());
-            }
-            let added = (now - total).max(0.0);
-            total = now;
-            // A geometric series from here on.
-            let ratio = if added_before > 0.0 {
-                (added / added_before).min(1.0)
+            let flux =
+                |patch: &Patch, irradiance: Rgb| f64::from(patch.area) * f64::from((patch.albedo * irradiance).mean());
+            let pairs = || field.patches.iter().zip(&arrived);
+            let total: f64 = pairs().map(|(patch, arrived)| flux(patch, *arrived)).sum();
+            let before: f64 = pairs().map(|(patch, _)| flux(patch, patch.indirect)).sum();
+            let added = (total - before).max(0.0);
+            let ratio = added / added_before;
+            let rest = if ratio < 1.0 {
+                ratio / (1.0 - ratio)
             } else {
-                0.0
+                f64::INFINITY
             };
-            let missing = match total {
-                0.0 => 0.0,
-                _ if ratio >= 1.0 || added_before.is_infinite() => f64::INFINITY,
-                _ => added * ratio / (1.0 - ratio) / total,
-            };
-            if missing <= tolerance || added == 0.0 {
-                return Solution { rounds: round, missing };
+            let is_done = added == 0.0 || round > 1 && added * rest <= tolerance * total;
+            for (patch, arrived) in field.patches.iter_mut().zip(&arrived) {
+                let last = *arrived - patch.indirect;
+                patch.indirect = *arrived;
+                if is_done && added > 0.0 {
+                    patch.indirect += positive(last) * rest as f32;
+                }
+            }
+            if is_done {
+                let estimated = if added > 0.0 { added * rest / total } else { 0.0 };
+                return Solution {
+                    rounds: round,
+                    estimated,
+                };
             }
             added_before = added;
         }
         Solution {
             rounds: MOST_ROUNDS,
-            missing: f64::INFINITY,
+            estimated: 0.0,
         }
     }
 }
@@ -110,4 +116,8 @@ impl FormFactors {
 /// Radiosity of a patch: what it reflects, W·m⁻².
 fn sent(patch: &Patch) -> Rgb {
     patch.albedo * (patch.direct + patch.indirect)
+}
+
+fn positive(value: Rgb) -> Rgb {
+    Rgb::new(value.r.max(0.0), value.g.max(0.0), value.b.max(0.0))
 }
