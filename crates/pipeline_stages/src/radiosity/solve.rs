@@ -4,7 +4,7 @@ use pipeline_core::{Cancellation, Counters, Progress, RenderClock, record_items}
 use pipeline_data::vocabulary::{Findings, SceneReport, field_place};
 use pipeline_data::{RenderSettings, SolvedPatches, TransportScene};
 use scene_format::Diagnostic;
-use transport::{ExchangeError, ExchangeSettings, PatchField, PlaceError, PlaceSettings};
+use transport::{ExchangeError, ExchangeSettings, PatchField, PlaceError, PlaceSettings, Scene};
 
 /// Points of patches where the scene says nothing; each stands for two sides.
 const USUAL_POINTS: u32 = 4000;
@@ -32,34 +32,9 @@ pub(super) fn solve_radiosity(
     if report.failed() {
         return;
     }
-    let mut refuse = |field: &str, message: String, note: &str| {
-        let mut findings = Findings::default();
-        let place = field_place(report.scene(), settings.render_prim, "Radiosity", &[field]);
-        findings.push_at(place, Diagnostic::error("too-large", message).note(note));
-        report.file(findings);
-    };
-    let place = PlaceSettings {
-        size: plan.settings.patch_size,
-        usual: USUAL_POINTS,
-        most: MOST_POINTS,
-    };
-    let mut field = match PatchField::place(&scene.0, &place) {
+    let mut field = match place(&scene.0, &plan) {
         Ok(field) => field,
-        Err(PlaceError::TooMany { points, least_size }) => {
-            let message = format!("radiosity would take {points:.0} patches; at most {MOST_POINTS} are used");
-            return refuse(
-                "patch_size",
-                message,
-                &format!("let `Radiosity.patch_size` be {least_size:.2e} or more"),
-            );
-        }
-        Err(PlaceError::Broken) => {
-            return refuse(
-                "patch_size",
-                "no patches can be laid over this scene".into(),
-                "are all places finite?",
-            );
-        }
+        Err(refusal) => return refuse(&mut report, settings.render_prim, refusal),
     };
     if clock.check_only || clock.photons_only {
         return;
@@ -84,12 +59,12 @@ pub(super) fn solve_radiosity(
         Ok(factors) => factors,
         Err(ExchangeError::Stopped) => return,
         Err(ExchangeError::TooMany) => {
-            let message = format!("radiosity found more than {MOST_LINKS} form factors, a gigabyte");
-            return refuse(
-                "patch_size",
-                message,
-                "let `Radiosity.patch_size` be larger, or take fewer `rays`",
-            );
+            let refusal = Diagnostic::error(
+                "too-large",
+                format!("radiosity found more than {MOST_LINKS} form factors, a gigabyte"),
+            )
+            .note("let `Radiosity.patch_size` be larger, or take fewer `rays`");
+            return refuse(&mut report, settings.render_prim, refusal);
         }
     };
     let solution = factors.solve(&mut field, f64::from(plan.settings.tolerance));
@@ -98,4 +73,33 @@ pub(super) fn solve_radiosity(
     counters.counter("radiosity/form factors").add(factors.len() as u64);
     counters.counter("radiosity/rounds").add(solution.rounds.into());
     commands.insert_resource(SolvedPatches(field));
+}
+
+/// Lays the patches.
+///
+/// # Errors
+/// What is wrong, for the scene's report.
+fn place(scene: &Scene, plan: &RadiosityPlan) -> Result<PatchField, Diagnostic> {
+    let settings = PlaceSettings {
+        size: plan.settings.patch_size,
+        usual: USUAL_POINTS,
+        most: MOST_POINTS,
+    };
+    PatchField::place(scene, &settings).map_err(|error| match error {
+        PlaceError::TooMany { points, least_size } => {
+            let message = format!("radiosity would take {points:.0} patches; at most {MOST_POINTS} are used");
+            let remedy = format!("let `Radiosity.patch_size` be {least_size:.2e} or more");
+            Diagnostic::error("too-large", message).note(remedy)
+        }
+        PlaceError::Broken => Diagnostic::error("too-large", "no patches can be laid over this scene")
+            .note("are all places and sizes finite?"),
+    })
+}
+
+/// Reports an error at the size of patches.
+fn refuse(report: &mut SceneReport<'_>, render_prim: u32, refusal: Diagnostic) {
+    let mut findings = Findings::default();
+    let place = field_place(report.scene(), render_prim, "Radiosity", &["patch_size"]);
+    findings.push_at(place, refusal);
+    report.file(findings);
 }

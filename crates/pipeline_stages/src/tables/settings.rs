@@ -191,17 +191,7 @@ fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest,
         let note = "a crop is x0 y0 x1 y1 in pixels from the top left; the last two are one beyond its last pixel";
         findings.push(Diagnostic::error("bad-crop", message).note(note));
     } else {
-        let layout = FilmSums::layout(settings.variance);
-        let bytes = match request.pixels {
-            Some(choice) => {
-                let most = u64::from(choice.count) * u64::from(choice.side) * u64::from(choice.side);
-                film::memory_of_pixels(
-                    window.pixel_count().min(usize::try_from(most).unwrap_or(usize::MAX)),
-                    &FilmSums::layout_by_layer(),
-                )
-            }
-            None => film::memory_bytes(&window, &layout),
-        };
+        let bytes = film_bytes(&window, settings, request);
         if bytes > MOST_FILM_BYTES {
             let message = format!(
                 "a film of {} × {} pixels takes {} GiB of memory; at most {} GiB are used",
@@ -216,6 +206,16 @@ fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest,
             findings.push_at(place.filter(|_| written), finding);
         }
     }
+}
+
+/// Memory of the film: of the whole window, or of the pixels that were chosen.
+fn film_bytes(window: &FilmWindow, settings: &RenderSettings, request: &RenderRequest) -> u64 {
+    let Some(choice) = request.pixels else {
+        return film::memory_bytes(window, &FilmSums::layout(settings.variance));
+    };
+    let most = u64::from(choice.count) * u64::from(choice.side) * u64::from(choice.side);
+    let pixels = window.pixel_count().min(usize::try_from(most).unwrap_or(usize::MAX));
+    film::memory_of_pixels(pixels, &FilmSums::layout_by_layer())
 }
 
 /// Finds the camera that `Render` names: the row of its prim, and its place.

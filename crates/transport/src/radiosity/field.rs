@@ -159,7 +159,7 @@ fn is_between(scene: &Scene, position: Vec3, normal: Vec3, error: f32, patch: &P
     let from = lift(position, normal, error);
     let way = lift(patch.position, patch.normal, patch.error) - from;
     let length = way.length();
-    if !(length > 0.0) {
+    if length <= 0.0 || length.is_nan() {
         return false;
     }
     scene.rays.occluded(&Ray {
