@@ -34,7 +34,7 @@ pub(super) fn solve_radiosity(
     }
     let mut field = match place(&scene.0, &plan) {
         Ok(field) => field,
-        Err(refusal) => return refuse(&mut report, settings.render_prim, refusal),
+        Err(refusal) => return refuse(&mut report, settings.render_prim, *refusal),
     };
     if clock.check_only || clock.photons_only {
         return;
@@ -79,13 +79,13 @@ pub(super) fn solve_radiosity(
 ///
 /// # Errors
 /// What is wrong, for the scene's report.
-fn place(scene: &Scene, plan: &RadiosityPlan) -> Result<PatchField, Diagnostic> {
+fn place(scene: &Scene, plan: &RadiosityPlan) -> Result<PatchField, Box<Diagnostic>> {
     let settings = PlaceSettings {
         size: plan.settings.patch_size,
         usual: USUAL_POINTS,
         most: MOST_POINTS,
     };
-    PatchField::place(scene, &settings).map_err(|error| match error {
+    let refusal = |error| match error {
         PlaceError::TooMany { points, least_size } => {
             let message = format!("radiosity would take {points:.0} patches; at most {MOST_POINTS} are used");
             let remedy = format!("let `Radiosity.patch_size` be {least_size:.2e} or more");
@@ -93,7 +93,8 @@ fn place(scene: &Scene, plan: &RadiosityPlan) -> Result<PatchField, Diagnostic> 
         }
         PlaceError::Broken => Diagnostic::error("too-large", "no patches can be laid over this scene")
             .note("are all places and sizes finite?"),
-    })
+    };
+    PatchField::place(scene, &settings).map_err(|error| Box::new(refusal(error)))
 }
 
 /// Reports an error at the size of patches.
