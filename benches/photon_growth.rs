@@ -12,7 +12,7 @@ use glam::Vec2;
 use pipeline_core::{CorePlugin, Load, Prepare, Report};
 use pipeline_data::{CameraFrame, Photon, RenderRequest, RenderSettings, TransportScene};
 use pipeline_stages::DefaultStages;
-use pipeline_stages::photon_map::photon_map;
+use pipeline_stages::photon_map::{look_for_walls, photon_map};
 use radiometry::{SampleStream, math};
 use rayon::prelude::*;
 use spatial::{Ray, SurfacePoint};
@@ -227,16 +227,17 @@ fn gather(criterion: &mut Criterion) {
         let mut growth = Growth::default();
         for map in &maps {
             let size = map.tree.len();
-            let map = PhotonMap {
+            let mut map = PhotonMap {
                 density: density(nearest, size, scene.diffuse_area()),
                 ..map.clone()
             };
+            look_for_walls(&mut map, scene);
             group.bench_function(BenchmarkId::from_parameter(size), |b| {
                 let mut scratch = DensityScratch::default();
                 b.iter_custom(|iterations| {
                     growth.time(size, vertices.len(), iterations, || {
                         for vertex in &vertices {
-                            black_box(map.estimate_radiance(vertex, &mut scratch));
+                            black_box(map.estimate_radiance(scene, vertex, &mut scratch));
                         }
                     })
                 });

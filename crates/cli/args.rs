@@ -37,6 +37,8 @@ pub(crate) enum Command {
     Photons(PhotonsArgs),
     /// Measure how far an image is from a reference
     Compare(CompareArgs),
+    /// Look for bias: trace random parts of a scene, and test its own methods against them
+    Audit(AuditArgs),
 }
 
 /// A scene and how to compose it.
@@ -273,4 +275,65 @@ pub(crate) struct CompareArgs {
     /// Compare a layer, such as `caustic`, instead of the whole image
     #[arg(long, value_name = "NAME")]
     pub(crate) layer: Option<String>,
+}
+
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Exit codes: 0 no bias found, 1 bias found or the audit failed, 2 bad command line or bad scene, 130 \
+                  interrupted.\n\
+                  The tracer cannot see everything: what hangs on a few bright samples, or may be light that no ray has met \
+                  yet, counts as undecided. Photon maps are the same for all samples, so their noise is in the image for good, and counts as bias."
+)]
+pub(crate) struct AuditArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// A map of the bias to write, .exr (numbers) or .png (red where too bright, blue where too dark, framed in white
+    /// where found); may be given several times
+    #[arg(short, long = "output", value_name = "FILE", value_parser = parse::output)]
+    pub(crate) output: Vec<PathBuf>,
+    /// Processor time to trace for, loading included: 90, 30s, 2m, 1h. One pass is always made
+    #[arg(long, value_name = "TIME", default_value = "30s", value_parser = parse::duration)]
+    pub(crate) budget: Duration,
+    /// Difference that is no defect, relative to the traced value: 1% or 0.01
+    #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = parse::share)]
+    pub(crate) tolerance: f64,
+    /// Chance that an image without bias passes, above 50%
+    #[arg(long, value_name = "SHARE", default_value = "99%", value_parser = parse::confidence)]
+    pub(crate) confidence: f64,
+    /// Blocks of pixels to look at, chosen at random
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_048_576))]
+    pub(crate) blocks: u32,
+    /// Side of a block in pixels: small ones find what is sharp, large ones what is faint
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(4..=256))]
+    pub(crate) block_size: u32,
+    /// Another trial looks at other blocks, and traces them with other random numbers
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) trial: u64,
+    /// Traced samples a pixel at most, which makes an audit repeatable to the bit
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(i64::from(film::LEAST_AUDIT_SAMPLES)..=16_777_216))]
+    pub(crate) traced_samples: Option<u32>,
+    /// Samples a pixel of the scene's own methods, in place of the scene's; at least 32 are taken
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_777_216))]
+    pub(crate) samples: Option<u32>,
+    /// Pixels of the whole film, in place of the scene's
+    #[arg(long, value_name = "WxH", value_parser = parse::resolution)]
+    pub(crate) resolution: Option<[u32; 2]>,
+    /// Look at a part only: first pixel, and the pixel after the last
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse::crop)]
+    pub(crate) crop: Option<[u32; 4]>,
+    /// Threads to use [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=parse::MAX_THREADS))]
+    pub(crate) threads: Option<u16>,
+    /// Seed of the scene's own methods, in place of the scene's
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// How many of the worst places to list
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    pub(crate) worst: usize,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Show nothing but warnings, errors and the result
+    #[arg(short, long)]
+    pub(crate) quiet: bool,
 }

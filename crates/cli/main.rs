@@ -7,6 +7,9 @@
 //! Data goes to standard output, text for people to standard error. A reader that goes away early is no error.
 
 mod args;
+mod audit;
+mod audit_map;
+mod audit_text;
 mod check;
 mod compare;
 mod compare_text;
@@ -46,6 +49,7 @@ fn main() -> ExitCode {
         Command::Profile(options) => profile::execute(&options),
         Command::Photons(options) => photons::execute(&options),
         Command::Compare(options) => compare::execute(&options),
+        Command::Audit(options) => audit::execute(&options),
     };
     exit::conclude(ended)
 }

@@ -99,6 +99,22 @@ pub(crate) fn relative_error(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A share from 0 and below 1: `1%`, `0.01`.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    match text.trim().trim_end_matches('%').parse::<f64>() {
+        Ok(0.0) => Ok(0.0),
+        _ => relative_error(text).map_err(|_| "give a share from 0 and below 100 %, such as 1% or 0.01".into()),
+    }
+}
+
+/// A share above a half and below 1: `99%`, `0.99`.
+pub(crate) fn confidence(text: &str) -> Result<f64, String> {
+    match relative_error(text) {
+        Ok(share) if share > 0.5 => Ok(share),
+        _ => Err("give a share above 50 % and below 100 %, such as 99% or 0.99".into()),
+    }
+}
+
 /// Width and height in pixels: `640x480`.
 pub(crate) fn resolution(text: &str) -> Result<[u32; 2], String> {
     let (width, height) = text
@@ -173,6 +189,16 @@ mod tests {
         for bad in ["", "s", "-3s", "0", "3 days", "NaN", "inf", "1e300h", "30 s s"] {
             assert!(duration(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn shares_are_checked() {
+        assert_eq!((share("1%"), share("0"), share("0.5")), (Ok(0.01), Ok(0.0), Ok(0.5)));
+        assert_eq!((confidence("99%"), confidence("0.95")), (Ok(0.99), Ok(0.95)));
+        for bad in ["", "%", "-1%", "100%", "1", "NaN", "inf%", "1e400"] {
+            assert!(share(bad).is_err() && confidence(bad).is_err(), "{bad}");
+        }
+        assert!(confidence("50%").is_err());
     }
 
     #[test]

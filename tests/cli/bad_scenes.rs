@@ -234,11 +234,6 @@ fn methods() {
         &with("indirect: PathTrace", "indirect: Magic"),
         &["scene.ron:7:", "PathTrace"],
     );
-    refuse(
-        "method to come",
-        &with("indirect: PathTrace", "indirect: Radiosity"),
-        &["scene.ron:7:", "Radiosity"],
-    );
 }
 
 #[test]

@@ -21,6 +21,7 @@ fn help_goes_to_standard_output() {
       profile  Render a scene and print what every system cost
       photons  Draw the photons of a scene as points, or write them to a file
       compare  Measure how far an image is from a reference
+      audit    Look for bias: trace random parts of a scene, and test its own methods against them
       help     Print this message or the help of the given subcommand(s)
 
     Options:
@@ -30,7 +31,7 @@ fn help_goes_to_standard_output() {
     Exit codes: 0 done, 1 render or I/O failed, 2 bad command line or bad scene, 130 interrupted (image written).
     ");
     for command in [
-        "run", "check", "flatten", "explain", "schema", "stages", "profile", "photons", "compare",
+        "run", "check", "flatten", "explain", "schema", "stages", "profile", "photons", "compare", "audit",
     ] {
         let ran = Folder::new().succeed(&format!("{command} --help"));
         assert!(

@@ -4,6 +4,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that meets an error should fail")]
 
+mod auditing;
 mod bad_meshes;
 mod bad_scenes;
 mod command_line;

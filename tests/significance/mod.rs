@@ -3,13 +3,7 @@
 //! Each value of the image is tested against that of the reference with Welch's t-test: the variance of a pixel's mean comes
 //! from eight batches here and from [`RUNS`] independent runs there, far too few to take it as known.
 
-#![expect(
-    clippy::disallowed_methods,
-    reason = "judges pictures, and no bit of one depends on it"
-)]
-
-use film::{ExrImage, RgbImage};
-use std::f64::consts::FRAC_PI_2;
+use film::{ExrImage, RgbImage, Welch};
 use std::fmt;
 
 /// Independent runs of the other renderer behind a reference with variance.
@@ -108,7 +102,7 @@ pub(crate) fn test_blocks(image: &Measured, reference: &Measured, side: usize) -
     let corners = |end: usize| (0..end).step_by(side);
     let blocks = corners(height).flat_map(|y| corners(width).map(move |x| (x, y)));
     let values = blocks.flat_map(|block| (0..3).map(move |channel| (block, channel)));
-    let statistics: Vec<(f64, f64)> = values
+    let statistics: Vec<Welch> = values
         .map(|((x, y), channel)| {
             let rows = (y..y + side).map(|row| row * width);
             let pixels = rows.flat_map(|row| row + x..row + x + side);
@@ -116,83 +110,30 @@ pub(crate) fn test_blocks(image: &Measured, reference: &Measured, side: usize) -
         })
         .collect();
     let tested = statistics.len();
-    let level = 1.0 - (1.0 - SIGNIFICANCE).powf(1.0 / tested as f64);
+    let level = 1.0 - radiometry::math::powf_f64(1.0 - SIGNIFICANCE, 1.0 / tested as f64);
     Verdict {
         side,
-        rms: (statistics.iter().map(|(t, _)| t * t).sum::<f64>() / tested as f64).sqrt(),
+        rms: (statistics.iter().map(|found| found.t(0.0).powi(2)).sum::<f64>() / tested as f64).sqrt(),
         tested,
-        failed: statistics
-            .iter()
-            .filter(|(t, freedom)| p_value(*t, *freedom) < level)
-            .count(),
+        failed: statistics.iter().filter(|found| found.p_value(0.0) < level).count(),
     }
 }
 
-/// Welch's t of a sum of pixels, and its degrees of freedom after Satterthwaite.
-fn statistic(
-    image: &Measured,
-    reference: &Measured,
-    pixels: impl Iterator<Item = usize>,
-    channel: usize,
-) -> (f64, f64) {
-    let (mut difference, mut variance, mut spread) = (0.0, 0.0, 0.0);
+/// Compares a sum of pixels.
+fn statistic(image: &Measured, reference: &Measured, pixels: impl Iterator<Item = usize>, channel: usize) -> Welch {
+    let mut sum = Welch::default();
     for pixel in pixels {
         let theirs = f64::from(reference.mean.pixels[pixel][channel]);
-        difference += f64::from(image.mean.pixels[pixel][channel]) - theirs;
-        variance += (ROUNDING * theirs).powi(2);
-        for side in [image, reference] {
+        let difference = f64::from(image.mean.pixels[pixel][channel]) - theirs;
+        let variances = [image, reference].map(|side| {
             let own = f64::from(side.variance.pixels[pixel][channel]);
-            variance += own;
-            spread += own * own / side.freedom;
-        }
+            (own, side.freedom)
+        });
+        sum.add(difference, variances);
+        sum.add(
+            0.0,
+            [((ROUNDING * theirs).powi(2), f64::INFINITY), (0.0, f64::INFINITY)],
+        );
     }
-    match difference {
-        0.0 => (0.0, f64::INFINITY),
-        _ => (difference / variance.sqrt(), variance * variance / spread),
-    }
-}
-
-/// Chance that Student's t is at least as far from 0, to the left or the right.
-///
-/// `P(|T| ≥ t) = ∫ cos^(ν−1) φ dφ` over `[φ_t, π/2]`, divided by that over `[0, π/2]`, with `t = √ν tan φ_t`.
-fn p_value(t: f64, freedom: f64) -> f64 {
-    /// A normal distribution in place of more degrees of freedom would be off by less than the integration.
-    const MOST_FREEDOM: f64 = 1e5;
-    /// Values nearer to 0 pass whatever their freedom, so the exact chance does not matter; it saves the time.
-    const CLEARLY_EQUAL: f64 = 2.5;
-    if t.abs() < CLEARLY_EQUAL {
-        return 1.0;
-    }
-    let freedom = freedom.min(MOST_FREEDOM);
-    let integral = |from: f64| simpson(from, FRAC_PI_2, |angle: f64| angle.cos().max(0.0).powf(freedom - 1.0));
-    integral((t.abs() / freedom.sqrt()).atan()) / integral(0.0)
-}
-
-/// Integrates a smooth function.
-fn simpson(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
-    const PARTS: u32 = 4096;
-    let step = (to - from) / f64::from(PARTS);
-    let inside: f64 = (1..PARTS)
-        .map(|i| f64::from(2 + 2 * (i % 2)) * f(from + f64::from(i) * step))
-        .sum();
-    (f(from) + inside + f(to)) * step / 3.0
-}
-
-#[test]
-fn p_values_are_those_of_student() {
-    // Quantiles from tables.
-    for (freedom, t, p) in [
-        (1.0, 12.706, 0.05),
-        (2.0, 31.599, 0.001),
-        (7.0, 3.499, 0.01),
-        (7.0, 5.408, 0.001),
-        (30.0, 2.750, 0.01),
-        (120.0, 3.373, 0.001),
-        (1e9, 3.2905, 0.001),
-        (1e9, 4.8916, 1e-6),
-    ] {
-        let found = p_value(t, freedom);
-        assert!((found - p).abs() < 0.005 * p, "{freedom}, {t}: {found} for {p}");
-        assert_eq!(found, p_value(-t, freedom));
-    }
+    sum
 }

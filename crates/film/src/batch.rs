@@ -57,11 +57,16 @@ impl BatchSum {
 }
 
 /// What the batches of a pixel say of one channel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Estimate {
-    pub(crate) mean: f64,
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Estimate {
+    /// Mean of all samples.
+    pub mean: f64,
     /// Of the mean; 0 with fewer than two batches.
-    pub(crate) variance: f64,
+    pub variance: f64,
+    /// Of each batch, its part of the mean: the batches add up to it.
+    pub parts: [f64; BATCHES as usize],
+    /// Of each batch, how far that is from its share of the mean.
+    pub off: [f64; BATCHES as usize],
 }
 
 /// Mean of all samples and its variance: `Σ w_b² (m_b − m)² / (1 − Σ w_b²)` over batches of means `m_b` and shares `w_b`.
@@ -74,22 +79,24 @@ pub(crate) fn estimate(batches: &PixelBatches, component: usize, count: u32) -> 
     let all = f64::from(count);
     let sum: f64 = batches.iter().map(|batch| batch[component].to_f64()).sum();
     if count == 0 {
-        return Estimate {
-            mean: 0.0,
-            variance: 0.0,
-        };
+        return Estimate::default();
     }
     let mean = sum / all;
+    let mut found = Estimate {
+        mean,
+        ..Estimate::default()
+    };
     let (mut spread, mut shares) = (0.0, 0.0);
-    for (batch, sums) in (0..).zip(batches) {
-        let share = f64::from(samples_of(batch, count)) / all;
+    for (batch, sums) in batches.iter().enumerate() {
+        let share = f64::from(samples_of(batch as u32, count)) / all;
+        found.parts[batch] = sums[component].to_f64() / all;
         // w_b (m_b − m), without dividing by the length of an empty batch.
-        let off = sums[component].to_f64() / all - share * mean;
-        spread += off * off;
+        found.off[batch] = found.parts[batch] - share * mean;
+        spread += found.off[batch] * found.off[batch];
         shares += share * share;
     }
-    let variance = if shares < 1.0 { spread / (1.0 - shares) } else { 0.0 };
-    Estimate { mean, variance }
+    found.variance = if shares < 1.0 { spread / (1.0 - shares) } else { 0.0 };
+    found
 }
 
 #[cfg(test)]

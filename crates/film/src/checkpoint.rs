@@ -110,7 +110,13 @@ impl Film {
         put(&layout)?;
         put(&counts_bytes(self.rejected()))?;
         let mut pixel = Vec::with_capacity(pixel_bytes(self.layout()));
-        for storage in self.raster() {
+        if self.is_chosen() {
+            return Err(io::Error::new(
+                io::ErrorKind::Unsupported,
+                "a film of chosen pixels has no checkpoint; render the whole window",
+            ));
+        }
+        for (_, storage) in self.raster() {
             pixel.clear();
             self.put_pixel(storage, &mut pixel);
             put(&pixel)?;
@@ -125,7 +131,9 @@ impl Film {
         for sum in &self.sums[storage * channels..][..channels] {
             bytes.extend_from_slice(&sum.to_le_bytes());
         }
-        for sum in self.batches.get(storage).iter().flat_map(|b| b.as_flattened()) {
+        let sets = self.layout().batch_sets();
+        let batches = self.batches[storage * sets..][..sets].as_flattened();
+        for sum in batches.as_flattened() {
             bytes.extend_from_slice(&sum.to_le_bytes());
         }
     }
@@ -139,12 +147,9 @@ impl Film {
         for (target, bytes) in targets.iter_mut().zip(sums.as_chunks::<16>().0) {
             *target = FixedSum::from_le_bytes(*bytes);
         }
-        let targets = self
-            .batches
-            .get_mut(storage)
-            .into_iter()
-            .flat_map(|b| b.as_flattened_mut());
-        for (target, bytes) in targets.zip(batches.as_chunks::<8>().0) {
+        let sets = self.layout().batch_sets();
+        let targets = self.batches[storage * sets..][..sets].as_flattened_mut();
+        for (target, bytes) in targets.as_flattened_mut().iter_mut().zip(batches.as_chunks::<8>().0) {
             *target = BatchSum::from_le_bytes(*bytes);
         }
     }
@@ -176,7 +181,8 @@ impl Film {
         let mut film = Self::new(window, layout, tile_size)?;
         film.rejected.add(rejected);
         let mut pixel = vec![0; pixel_bytes(film.layout())];
-        for storage in film.raster() {
+        let order: Vec<usize> = film.raster().map(|(_, storage)| storage).collect();
+        for storage in order {
             source.fill(&mut pixel)?;
             film.take_pixel(storage, &pixel);
         }
@@ -313,7 +319,11 @@ fn counts_bytes(counts: RejectedCounts) -> Vec<u8> {
 /// The resolved channel names say everything about a layout but the split between layers and groups.
 fn layout_bytes(layout: &ChannelLayout) -> Vec<u8> {
     let names = layout.image_channel_names().join(" ");
-    format!("{} {} {names}", layout.layers.len(), layout.variance).into_bytes()
+    let batches = match layout.layer_variance {
+        true => "layers".into(),
+        false => layout.variance.to_string(),
+    };
+    format!("{} {batches} {names}", layout.layers.len()).into_bytes()
 }
 
 #[cfg(test)]

@@ -25,6 +25,12 @@ pub enum FilmError {
         /// What was asked for.
         window: FilmWindow,
     },
+    /// A chosen pixel lies outside of the crop.
+    #[error("pixel {},{} is not inside the crop; choose among its pixels", pixel.x, pixel.y)]
+    Pixel {
+        /// What was asked for.
+        pixel: UVec2,
+    },
     /// A tile must hold a pixel at least.
     #[error("tile size 0 is out of range; use 1 to {MAX_SIDE}")]
     TileSize,

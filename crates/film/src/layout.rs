@@ -64,7 +64,7 @@ impl AuxGroup {
 /// The channels of a film.
 ///
 /// Per pixel: three for every radiance layer, one for alpha, and those of the groups, 16 bytes each; for the
-/// variance, if it is wanted, the sums of [`BATCHES`](crate::BATCHES) batches, 192 bytes.
+/// variance, if it is wanted, the sums of [`BATCHES`](crate::BATCHES) batches, 192 bytes a set.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelLayout {
     /// Names of the RGB radiance layers, W·m⁻²·sr⁻¹. Their sum, in this order, is the beauty image.
@@ -73,6 +73,9 @@ pub struct ChannelLayout {
     pub aux: Vec<AuxGroup>,
     /// Whether sums of batches are kept, for the variance of the mean of each beauty channel.
     pub variance: bool,
+    /// Whether such sums are kept of each layer too, which [`Film::estimate`](crate::Film::estimate) then tells apart; no
+    /// file has them. Counts with `variance` alone.
+    pub layer_variance: bool,
 }
 
 impl ChannelLayout {
@@ -88,6 +91,7 @@ impl ChannelLayout {
                 AuxGroup::depth("depth"),
             ],
             variance: true,
+            layer_variance: false,
         }
     }
 
@@ -110,9 +114,13 @@ impl ChannelLayout {
         (if self.variance { BATCHES } else { 1 }, BATCH_RUN)
     }
 
-    /// Sets of batches that a pixel holds.
+    /// Sets of batches that a pixel holds: of the beauty, then of each layer.
     pub(crate) fn batch_sets(&self) -> usize {
-        usize::from(self.variance)
+        match (self.variance, self.layer_variance) {
+            (false, _) => 0,
+            (true, false) => 1,
+            (true, true) => 1 + self.layers.len(),
+        }
     }
 
     /// Position of alpha among the sums of a pixel; the layers come before it.

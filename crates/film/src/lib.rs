@@ -2,7 +2,7 @@
 //!
 //! A renderer hands over radiance, sample by sample and from any number of threads. This crate adds it
 //! up, decides where within a pixel a sample should look, turns the sums into an image, writes it as
-//! EXR and PNG, and measures how far two images are apart. Slices and numbers in, values and files out;
+//! EXR and PNG, measures how far two images are apart, and tells a bias from noise ([`audit()`]). Slices and numbers in, values and files out;
 //! it knows nothing of scenes, rays or entities.
 //!
 //! # The same bits
@@ -29,8 +29,7 @@
 //! # What it does not do
 //!
 //! No splatting: light tracing to the film would need another store. No colour management beyond
-//! Rec.709 in and sRGB out, no denoising, no tiled, deep or multi-part EXR output. Statistics go as far
-//! as the variance of a pixel's mean; tests on them belong to the test suite.
+//! Rec.709 in and sRGB out, no denoising, no tiled, deep or multi-part EXR output.
 //!
 //! # Example
 //!
@@ -70,6 +69,7 @@
 
 mod accumulate;
 mod atomic;
+mod audit;
 mod batch;
 mod checkpoint;
 mod error;
@@ -84,13 +84,15 @@ mod metrics;
 mod pixels;
 mod png_file;
 mod resolve;
+mod significance;
 mod span;
 mod tone;
 mod window;
 
-pub use accumulate::{Film, memory_bytes};
+pub use accumulate::{Film, memory_bytes, memory_of_pixels};
 pub use atomic::{WriteError, atomic_write};
-pub use batch::{BATCH_RUN, BATCHES};
+pub use audit::{Audit, AuditOptions, AuditTest, DARK, LEAST_AUDIT_SAMPLES, PixelBlock, audit};
+pub use batch::{BATCH_RUN, BATCHES, Estimate};
 pub use checkpoint::CheckpointError;
 pub use error::FilmError;
 pub use exr_file::{ExrWriteError, Metadata, write_exr};
@@ -106,6 +108,7 @@ pub use metrics::{
 };
 pub use pixels::{Channel, Image, RgbImage};
 pub use png_file::{write_png, write_rgb8_png};
+pub use significance::{Welch, holm, p_value, t_quantile};
 pub use span::FilmSpan;
 pub use tone::{ToneMap, display_rgb8, encode_srgb8, tone_map};
 pub use window::{FilmWindow, MAX_SIDE};

@@ -49,11 +49,20 @@ impl Film {
             0 => 0.0,
             count => (self.sums[storage * channels + channel].to_f64() / f64::from(count)) as f32,
         };
-        self.raster().map(mean).collect()
+        self.plane(mean)
+    }
+
+    /// A value a pixel of the window, from storage indices; 0 where nothing is stored.
+    fn plane(&self, value: impl Fn(usize) -> f32) -> Vec<f32> {
+        let mut plane = vec![0.0; self.window().pixel_count()];
+        for (place, storage) in self.raster() {
+            plane[place] = value(storage);
+        }
+        plane
     }
 
     fn add_layers(&self, layers: &[Vec<f32>], component: usize) -> Vec<f32> {
-        let mut beauty = vec![0.0; self.pixel_count()];
+        let mut beauty = vec![0.0; self.window().pixel_count()];
         for layer in layers.iter().skip(component).step_by(3) {
             for (sum, value) in beauty.iter_mut().zip(layer) {
                 *sum += value;
@@ -63,13 +72,23 @@ impl Film {
     }
 
     fn variance_of(&self, component: usize) -> Vec<f32> {
-        let variance = |storage: usize| self.estimate(storage, component).variance as f32;
-        self.raster().map(variance).collect()
+        self.plane(|storage| self.estimate(storage, None, component).variance as f32)
     }
 
-    /// Mean and variance of a beauty channel, from the batches; the film has to have them.
-    pub(crate) fn estimate(&self, storage: usize, component: usize) -> Estimate {
-        estimate(&self.batches[storage], component, self.samples[storage])
+    /// Returns mean and variance of one channel of a pixel, from its batches.
+    ///
+    /// - `layer`: a row of [`ChannelLayout::layers`](crate::ChannelLayout::layers), which takes `layer_variance`; none for
+    ///   the beauty.
+    ///
+    /// # Panics
+    ///
+    /// Without the variance that is asked for, and beyond the pixels, layers or three channels.
+    #[must_use]
+    pub fn estimate(&self, storage: usize, layer: Option<usize>, component: usize) -> Estimate {
+        let sets = self.layout().batch_sets();
+        let set = layer.map_or(0, |layer| layer + 1);
+        assert!(set < sets, "the film keeps no batches of this layer");
+        estimate(&self.batches[storage * sets + set], component, self.samples[storage])
     }
 
     /// Estimates the relative error of the image: the root of the mean, over pixels and channels, of
@@ -85,7 +104,7 @@ impl Film {
             return None;
         }
         let each = |component: usize| -> Vec<Estimate> {
-            let estimate = |storage: usize| self.estimate(storage, component);
+            let estimate = |storage: usize| self.estimate(storage, None, component);
             (0..pixels).into_par_iter().map(estimate).collect()
         };
         let channels = [each(0), each(1), each(2)];

@@ -5,19 +5,19 @@ use glam::UVec2;
 use crate::batch::{PixelBatches, batch_of};
 use crate::fixed_sum::FixedSum;
 use crate::guard::{Rejected, RejectedCounter, check_sample};
-use crate::window::{FilmWindow, TileOrder};
+use crate::window::{FilmWindow, StorageOrder};
 
 /// A contiguous run of pixels of a film, for one thread to fill.
 #[derive(Debug)]
 pub struct FilmSpan<'film> {
     pub(crate) start: usize,
-    pub(crate) order: TileOrder,
+    pub(crate) order: &'film StorageOrder,
     pub(crate) window: &'film FilmWindow,
     pub(crate) alpha_offset: usize,
     pub(crate) channels: usize,
     pub(crate) sums: &'film mut [FixedSum],
     pub(crate) samples: &'film mut [u32],
-    /// Empty without the variance.
+    /// Some sets a pixel; none without the variance.
     pub(crate) batches: &'film mut [PixelBatches],
     pub(crate) rejected: &'film RejectedCounter,
 }
@@ -94,10 +94,15 @@ impl FilmSpan<'_> {
         }
         rest[0].add(alpha);
         add_values(&mut rest[1..], aux);
-        if let Some(batches) = self.batches.get_mut(local) {
-            let batch = &mut batches[batch_of(number)];
-            for (component, sum) in batch.iter_mut().enumerate() {
+        let sets = self.batches.len() / self.samples.len();
+        let batches = &mut self.batches[local * sets..][..sets];
+        if let Some((beauty, layers)) = batches.split_first_mut() {
+            let batch = batch_of(number);
+            for (component, sum) in beauty[batch].iter_mut().enumerate() {
                 sum.add(radiance.iter().map(|layer| layer[component]).sum());
+            }
+            for (layer, value) in layers.iter_mut().zip(radiance) {
+                layer[batch].iter_mut().zip(value).for_each(|(sum, v)| sum.add(*v));
             }
         }
         Ok(())

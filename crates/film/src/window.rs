@@ -114,6 +114,45 @@ impl TileOrder {
     }
 }
 
+/// Which pixel of the window each storage index stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum StorageOrder {
+    /// All pixels of the window.
+    Tiles(TileOrder),
+    /// These alone, relative to the window, in this order.
+    Chosen { pixels: Vec<UVec2>, width: usize },
+}
+
+impl StorageOrder {
+    /// Returns the number of pixels that are stored.
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Tiles(order) => order.width * order.height,
+            Self::Chosen { pixels, .. } => pixels.len(),
+        }
+    }
+
+    /// Returns the pixel, relative to the window, of a storage index.
+    pub(crate) fn position_of(&self, storage: usize) -> UVec2 {
+        match self {
+            Self::Tiles(order) => order.position_of(storage),
+            Self::Chosen { pixels, .. } => pixels[storage],
+        }
+    }
+
+    /// Lists place in raster order and storage index of every pixel that is stored: of a whole window by place, of
+    /// chosen pixels by index.
+    pub(crate) fn raster(&self) -> Box<dyn Iterator<Item = (usize, usize)> + Send + '_> {
+        match self {
+            Self::Tiles(order) => Box::new(order.raster().enumerate()),
+            Self::Chosen { pixels, width } => {
+                let place = move |pixel: &UVec2| pixel.y as usize * width + pixel.x as usize;
+                Box::new(pixels.iter().map(place).zip(0..))
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,8 +7,10 @@
 //! It deliberately holds no formula: those are one layer down, in crates that know no ECS.
 
 mod mesh_store;
+mod patch;
 mod photon;
 mod photon_file;
+mod pixel_choice;
 mod request;
 mod scene;
 mod settings;
@@ -17,10 +19,12 @@ mod texture_store;
 pub mod vocabulary;
 
 pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
+pub use patch::{PatchDemand, RadiosityPatch, SolvedPatches};
 pub use photon::{
     BuiltPhotonMaps, CausticPhoton, DirectPhoton, IndirectPhoton, Photon, PhotonDemand, PhotonMarker, ProgressivePasses,
 };
 pub use photon_file::{PhotonFileError, PhotonsOfKind, read_photons, write_photons};
+pub use pixel_choice::{ChosenBlocks, PixelChoice};
 pub use request::RenderRequest;
 pub use scene::{
     Acceleration, CameraFrame, ComposedScene, EnvironmentMaps, InstancePrims, PrimIndex, SceneOrigin, ShutterInterval,

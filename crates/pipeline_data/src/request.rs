@@ -1,3 +1,4 @@
+use crate::PixelChoice;
 use bevy_ecs::resource::Resource;
 use glam::UVec2;
 use std::path::PathBuf;
@@ -31,6 +32,10 @@ pub struct RenderRequest {
     pub photon_maps: MapKinds,
     /// Go on from the checkpoint that an interrupted render left beside its first output.
     pub resume: bool,
+    /// Render these pixels alone, and keep the variance of every layer.
+    pub pixels: Option<PixelChoice>,
+    /// Trace everything, whatever the scene's methods, but for what they switch off: the same image without bias.
+    pub traced: bool,
     /// Treat warnings as errors.
     pub strict: bool,
     /// Use colour in messages.
@@ -52,6 +57,8 @@ impl Default for RenderRequest {
             photons: None,
             photon_maps: MapKinds::default(),
             resume: false,
+            pixels: None,
+            traced: false,
             strict: false,
             colour: false,
         }

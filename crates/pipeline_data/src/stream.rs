@@ -157,6 +157,15 @@ impl FilmSums {
     /// Layers that the film has: all but `volume`, which nothing renders yet.
     pub const LAYERS: usize = 5;
 
+    /// Channels of a film that keeps the variance of every layer.
+    #[must_use]
+    pub fn layout_by_layer() -> ChannelLayout {
+        ChannelLayout {
+            layer_variance: true,
+            ..Self::layout(true)
+        }
+    }
+
     /// Channels of the film, with or without the variance.
     #[must_use]
     pub fn layout(variance: bool) -> ChannelLayout {
@@ -171,6 +180,7 @@ impl FilmSums {
                 AuxGroup::depth("depth"),
             ],
             variance,
+            layer_variance: false,
         }
     }
 }

@@ -15,6 +15,7 @@
 //! | [`photon_map`] | photons: emitted, stored as entities in three maps, gathered |
 //! | [`photon_thinning`] | fewer photons where a picture has no use for more, with all their flux |
 //! | [`final_gather`] | indirect light by rays that read the photon maps |
+//! | [`radiosity`] | indirect light that matt surfaces exchange, solved for patches |
 //! | [`path_guiding`] | directions of paths, drawn to where photons come from |
 //! | [`path_tracing`] | intersection, emission, direct light, scattering |
 //! | [`image`] | film, auxiliary channels, image files and checkpoints |
@@ -42,6 +43,7 @@ pub mod path_guiding;
 pub mod path_tracing;
 pub mod photon_map;
 pub mod photon_thinning;
+pub mod radiosity;
 pub mod tables;
 
 /// All stages of the renderer.
@@ -59,6 +61,7 @@ impl Plugin for DefaultStages {
             photon_map::PhotonMapPlugin,
             photon_thinning::PhotonThinningPlugin,
             final_gather::FinalGatherPlugin,
+            radiosity::RadiosityPlugin,
             path_guiding::PathGuidingPlugin,
             path_tracing::PathTracingPlugin,
             image::ImagePlugin,
@@ -72,6 +75,7 @@ impl Plugin for DefaultStages {
                 image::ImageSystems,
                 path_guiding::PathGuidingSystems,
                 final_gather::FinalGatherSystems,
+                radiosity::RadiositySystems,
                 photon_map::PhotonMapSystems,
                 photon_thinning::PhotonThinningSystems,
                 camera::CameraSystems,

@@ -1,7 +1,9 @@
+use crate::density::Estimate;
 use crate::path::{Path, arrive, emitted_light, sample_direct_light_at, scatter_at};
 use crate::path_class::{CausticMethod, DirectMethod, IndirectMethod, Methods};
 use crate::photon::MapKind;
 use crate::photon_maps::{PhotonMaps, PhotonMapsScratch};
+use crate::radiosity::{PatchField, PatchScratch};
 use crate::scene::Scene;
 use crate::vertex::Vertex;
 use radiometry::{Rgb, StageKey};
@@ -9,6 +11,24 @@ use spatial::Ray;
 
 /// Key of the random numbers of gather rays.
 const GATHER_STAGE: StageKey = StageKey::new("final_gather");
+
+/// Who knows what is reflected at the ends of gather rays.
+#[derive(Clone, Copy, Debug)]
+pub enum Incoming<'a> {
+    /// Nobody: every ray goes on as a path, which is unbiased.
+    Paths,
+    /// The photon maps.
+    Photons(&'a PhotonMaps),
+    /// The patches of radiosity.
+    Patches(&'a PatchField),
+}
+
+/// Memory that gather rays reuse; one a thread.
+#[derive(Clone, Debug, Default)]
+pub struct GatherScratch {
+    photons: PhotonMapsScratch,
+    patches: PatchScratch,
+}
 
 /// What gather rays count, made once a render.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +74,7 @@ impl GatherMethods {
 /// but goes on as a path, with light sampling, so that corners stay clean.
 ///
 /// - `path`: as it arrived at the vertex.
-/// - `maps`: without them every ray goes on as a path, which is unbiased.
+/// - `incoming`: who knows what is reflected at the ends of rays.
 /// - `rays`: N, at least 1.
 /// - returns radiance in W·m⁻²·sr⁻¹, weighted with what the path carries.
 #[must_use]
@@ -65,12 +85,12 @@ impl GatherMethods {
 pub fn gather_indirect(
     scene: &Scene,
     methods: &GatherMethods,
-    maps: Option<&PhotonMaps>,
+    incoming: Incoming<'_>,
     path: &Path,
     time: f32,
     vertex: &Vertex<'_>,
     rays: u32,
-    scratch: &mut PhotonMapsScratch,
+    scratch: &mut GatherScratch,
 ) -> Rgb {
     let mut sum = Rgb::BLACK;
     for number in 0..rays {
@@ -83,7 +103,7 @@ pub fn gather_indirect(
         };
         // What leaves by an S lobe is specular light, traced elsewhere.
         if !path.class.ends_as_specular() {
-            sum += light_along(scene, methods, maps, path, ray, scratch);
+            sum += light_along(scene, methods, incoming, path, ray, scratch);
         }
     }
     sum * (1.0 / rays as f32)
@@ -93,10 +113,10 @@ pub fn gather_indirect(
 fn light_along(
     scene: &Scene,
     methods: &GatherMethods,
-    maps: Option<&PhotonMaps>,
+    incoming: Incoming<'_>,
     mut path: Path,
     mut ray: Ray,
-    scratch: &mut PhotonMapsScratch,
+    scratch: &mut GatherScratch,
 ) -> Rgb {
     let mut light = Rgb::BLACK;
     // Since the last D vertex, over any S.
@@ -114,17 +134,24 @@ fn light_along(
         let Some(hit) = hit else { return light };
         length += ray.origin.distance(hit.p);
         let vertex = Vertex::new(scene, &hit, -ray.direction, &path.medium);
-        let mut is_read = false;
-        if let (Some(maps), true) = (maps, vertex.bsdf.has_diffuse() && path.depth < methods.max_depth) {
-            let all = maps.estimate_all(scene, &vertex, scratch);
-            is_read = length > all.radius;
-            let seen = if is_read {
-                all
-            } else {
-                maps.estimate_radiance(scene, MapKind::Caustic, &vertex, scratch)
-            };
-            light += path.throughput * seen.value;
-        }
+        let has_light = vertex.bsdf.has_diffuse() && path.depth < methods.max_depth;
+        let (is_read, seen) = match incoming {
+            Incoming::Photons(maps) if has_light => {
+                let all = maps.estimate_all(scene, &vertex, &mut scratch.photons);
+                if length > all.radius {
+                    (true, all.value)
+                } else {
+                    let caustic = maps.estimate_radiance(scene, MapKind::Caustic, &vertex, &mut scratch.photons);
+                    (false, caustic.value)
+                }
+            }
+            Incoming::Patches(field) if has_light => match seen_on_patch(scene, field, &vertex, &mut scratch.patches) {
+                Some(all) if length > all.radius => (true, all.value),
+                _ => (false, Rgb::BLACK),
+            },
+            _ => (false, Rgb::BLACK),
+        };
+        light += path.throughput * seen;
         if !is_read {
             sample_direct_light_at(scene, methods, &path, ray.time, &vertex, |_, direct| light += direct);
         } else if !vertex.bsdf.has_specular() {
@@ -141,4 +168,18 @@ fn light_along(
         }
         ray = next;
     }
+}
+
+/// All that a place reflects by its D lobes, as its patch tells, and the distance from which it is seen well.
+fn seen_on_patch(
+    scene: &Scene,
+    field: &PatchField,
+    vertex: &Vertex<'_>,
+    scratch: &mut PatchScratch,
+) -> Option<Estimate> {
+    let irradiance = field.irradiance(scene, vertex, scratch)?;
+    Some(Estimate {
+        value: vertex.diffuse_response() * (irradiance.direct + irradiance.indirect),
+        radius: field.spacing(),
+    })
 }

@@ -12,7 +12,8 @@
 //! - [`arrive`], [`emitted_light`], [`sample_direct_light`] and [`scatter`] are one bounce of a path from the eye.
 //! - [`EmissionSampler`] and [`trace_photon`] are the life of a photon; [`PhotonMap`] estimates radiance from where
 //!   photons landed, [`PhotonMaps`] holds one of each [`MapKind`].
-//! - [`gather_indirect`] asks the maps what gather rays see.
+//! - [`PatchField`] and [`FormFactors`] are radiosity: what matt surfaces exchange, solved for patches.
+//! - [`gather_indirect`] asks photon maps or patches what gather rays see.
 //!
 //! It deliberately has no volumes and no caches yet, and it never decides anything by thread or time.
 //!
@@ -37,6 +38,7 @@ mod path_class;
 mod photon;
 mod photon_maps;
 mod projection;
+mod radiosity;
 mod scene;
 mod textures;
 mod thinning;
@@ -51,7 +53,7 @@ pub use density::{
 };
 pub use emission::{EmissionSampler, EmittedPhoton};
 pub use frame::MovingFrame;
-pub use gather::{GatherMethods, gather_indirect};
+pub use gather::{GatherMethods, GatherScratch, Incoming, gather_indirect};
 pub use guide::Guide;
 pub use light::{Environment, EnvironmentMap, LightSample, LightSource, LightTable, SpotCone};
 pub use medium::PathMedium;
@@ -60,6 +62,10 @@ pub use path_class::{CausticMethod, DirectMethod, Event, IndirectMethod, Layer, 
 pub use photon::{Deposit, MapKind, MapKinds, PHOTON_STAGE, trace_photon};
 pub use photon_maps::{IrradianceMap, PhotonMaps, PhotonMapsScratch};
 pub use projection::{MAX_TARGETS, TargetSphere, cluster_targets};
+pub use radiosity::{
+    ExchangeError, ExchangeSettings, FormFactors, Patch, PatchField, PatchIrradiance, PatchRow, PatchScratch,
+    PlaceError, PlaceSettings, Solution, cast_row, find_direct, find_form_factors,
+};
 pub use scene::{Material, Scene};
 pub use textures::{Coverage, Input, NormalMap, PrincipledInputs, SurfaceInputs, TexturedBsdf, TexturedSurface};
 pub use thinning::{PhotonRows, thin_photons};

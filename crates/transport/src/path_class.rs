@@ -187,6 +187,8 @@ pub enum IndirectMethod {
     PhotonMap,
     /// Rays over the hemisphere of the first D vertex, and what the next D vertex reflects at their ends.
     FinalGather,
+    /// The solution of radiosity is read at the first D vertex.
+    Radiosity,
     /// The layer is black.
     Off,
 }
@@ -195,7 +197,7 @@ impl IndirectMethod {
     /// True when paths end at their first D vertex, because another estimator knows all light that comes over a second.
     #[must_use]
     pub const fn replaces_paths(self) -> bool {
-        matches!(self, Self::PhotonMap | Self::FinalGather)
+        matches!(self, Self::PhotonMap | Self::FinalGather | Self::Radiosity)
     }
 }
 
@@ -226,6 +228,26 @@ impl Methods {
         specular_alpha: 0.05,
         max_depth: u32::MAX,
     };
+
+    /// The same terms without bias: each that is not switched off is traced.
+    #[must_use]
+    pub fn traced(self) -> Self {
+        Self {
+            direct: match self.direct {
+                DirectMethod::Off => DirectMethod::Off,
+                _ => DirectMethod::SampleLights,
+            },
+            caustic: match self.caustic {
+                CausticMethod::Off => CausticMethod::Off,
+                _ => CausticMethod::Trace,
+            },
+            indirect: match self.indirect {
+                IndirectMethod::Off => IndirectMethod::Off,
+                _ => IndirectMethod::PathTrace,
+            },
+            ..self
+        }
+    }
 
     /// True when this layer is not switched off.
     #[must_use]
@@ -284,6 +306,14 @@ impl Methods {
     pub fn gather_layer(&self, class: PathClass) -> Option<Layer> {
         let layer = class.after(Event::Diffuse).after(Event::Diffuse).layer();
         (self.indirect == IndirectMethod::FinalGather && class.is_specular_only() && self.shows(layer)).then_some(layer)
+    }
+
+    /// The layer that the solution of radiosity adds to when it is read at a D vertex that a path of class `class` reached;
+    /// `None` where it is not to be read.
+    #[must_use]
+    pub fn radiosity_layer(&self, class: PathClass) -> Option<Layer> {
+        let layer = class.after(Event::Diffuse).after(Event::Diffuse).layer();
+        (self.indirect == IndirectMethod::Radiosity && class.is_specular_only() && self.shows(layer)).then_some(layer)
     }
 
     /// True when a path of this class can still contribute to anything by meeting light, however it goes on.
@@ -379,6 +409,7 @@ mod tests {
                     IndirectMethod::PathTrace,
                     IndirectMethod::PhotonMap,
                     IndirectMethod::FinalGather,
+                    IndirectMethod::Radiosity,
                 ] {
                     all.push(Methods {
                         direct,
@@ -404,6 +435,7 @@ mod tests {
             let rest = events[at + 1..].trim_start_matches('S');
             if !rest.is_empty() {
                 found.extend(methods.gather_layer(class_of(&events[..at])));
+                found.extend(methods.radiosity_layer(class_of(&events[..at])));
             }
         }
         found
@@ -454,6 +486,32 @@ mod tests {
                     methods.may_contribute(class_of(events)) || !could,
                     "E{events} under {methods:?}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn traced_methods_show_the_same_layers() {
+        for direct in [DirectMethod::SampleLights, DirectMethod::PhotonMap, DirectMethod::Off] {
+            for caustic in [CausticMethod::PhotonMap, CausticMethod::Trace, CausticMethod::Off] {
+                for indirect in [
+                    IndirectMethod::FinalGather,
+                    IndirectMethod::Radiosity,
+                    IndirectMethod::Off,
+                ] {
+                    let methods = Methods {
+                        direct,
+                        caustic,
+                        indirect,
+                        ..Methods::TRACED
+                    };
+                    let traced = methods.traced();
+                    for layer in Layer::ALL {
+                        assert_eq!(traced.shows(layer), methods.shows(layer), "{layer:?} under {methods:?}");
+                    }
+                    assert!(MapKind::ALL.iter().all(|kind| !traced.reads_map(*kind)));
+                    assert!(!traced.indirect.replaces_paths());
+                }
             }
         }
     }

@@ -219,6 +219,12 @@ impl Scene {
         self.material_by_row(self.material_row(point))
     }
 
+    /// The material of an instance.
+    #[must_use]
+    pub fn material_of(&self, instance: u32) -> &Material {
+        self.material_by_row(self.material_of_instance[instance as usize])
+    }
+
     /// Row of the material of the surface that was hit.
     #[inline]
     #[must_use]

@@ -110,7 +110,7 @@ fn bad_samples_count_but_add_nothing() {
     let layout = ChannelLayout {
         layers: vec!["a".into(), "b".into()],
         aux: vec![AuxGroup::depth("depth")],
-        variance: false,
+        ..ChannelLayout::default()
     };
     let mut film = Film::new(FilmWindow::full(UVec2::ONE), layout, 1).unwrap();
     let mut spans = film.spans_mut(0..1, 1);

@@ -133,6 +133,8 @@ pub enum IndirectMethod {
     PhotonMap,
     /// Rays over the hemisphere that read all photon maps where they end: smooth, and sharp in corners.
     FinalGather,
+    /// Light exchanged between patches of all matt surfaces, solved once: smooth, and without small shadows.
+    Radiosity,
     /// Not at all.
     Off,
 }
@@ -143,6 +145,7 @@ impl From<IndirectMethod> for transport::IndirectMethod {
             IndirectMethod::PathTrace => Self::PathTrace,
             IndirectMethod::PhotonMap => Self::PhotonMap,
             IndirectMethod::FinalGather => Self::FinalGather,
+            IndirectMethod::Radiosity => Self::Radiosity,
             IndirectMethod::Off => Self::Off,
         }
     }

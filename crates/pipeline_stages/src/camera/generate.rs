@@ -18,8 +18,7 @@ pub(super) fn plan_waves(
     let (Some(settings), Some(film), false) = (settings, film, report.failed()) else {
         return;
     };
-    let size = settings.crop_max - settings.crop_min;
-    let pixels = size.x as usize * size.y as usize;
+    let pixels = film.0.pixel_count();
     // A power of two of samples keeps each pixel's share of a pass an aligned run of its sequences.
     let fitting = (WAVE_PATHS / pixels.max(1)).clamp(1, BATCH_PATHS);
     let samples_per_pass = match progressive {

@@ -1,11 +1,13 @@
+use super::GatherSource;
 use super::plan::GatherPlan;
 use bevy_ecs::prelude::*;
 use pipeline_core::{Counter, Counters, record_items};
 use pipeline_data::{
-    BuiltPhotonMaps, Contribution, ContributionLog, HitStream, PathStream, RayStream, RenderSettings, TransportScene,
+    BuiltPhotonMaps, Contribution, ContributionLog, HitStream, PathStream, RayStream, RenderSettings, SolvedPatches,
+    TransportScene,
 };
 use rayon::prelude::*;
-use transport::{PhotonMapsScratch, Vertex};
+use transport::{GatherScratch, Incoming, Vertex};
 
 /// Indirect light that was gathered. Written by `gather_indirect`.
 #[derive(Component, Clone, Debug, Default)]
@@ -37,18 +39,23 @@ pub(super) fn gather_indirect(
     settings: Res<RenderSettings>,
     plan: Res<GatherPlan>,
     built: Option<Res<BuiltPhotonMaps>>,
+    patches: Option<Res<SolvedPatches>>,
     counter: Local<RayCounter>,
 ) {
     // Without any photon there is nothing to read, and nothing is reflected.
     let empty = transport::PhotonMaps::default();
-    let maps = plan
-        .reads_photons
-        .then(|| built.as_ref().map_or(&empty, |built| &built.0));
+    let incoming = match plan.incoming {
+        GatherSource::Path => Incoming::Paths,
+        GatherSource::Photons => Incoming::Photons(built.as_ref().map_or(&empty, |built| &built.0)),
+        GatherSource::Radiosity => patches
+            .as_ref()
+            .map_or(Incoming::Paths, |patches| Incoming::Patches(&patches.0)),
+    };
     let methods = &settings.methods;
     let mut batches: Vec<_> = batches.iter_mut().collect();
     let points: usize = batches
         .par_iter_mut()
-        .map_init(PhotonMapsScratch::default, |scratch, (rays, paths, hits, log)| {
+        .map_init(GatherScratch::default, |scratch, (rays, paths, hits, log)| {
             let mut points = 0;
             for ((ray, path), hit) in rays.0.iter().zip(&paths.0).zip(&hits.0) {
                 let Some(hit) = hit else { continue };
@@ -63,7 +70,7 @@ pub(super) fn gather_indirect(
                 let light = transport::gather_indirect(
                     &scene.0,
                     &plan.methods,
-                    maps,
+                    incoming,
                     path,
                     ray.time,
                     &vertex,

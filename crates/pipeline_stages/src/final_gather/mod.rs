@@ -2,7 +2,7 @@
 //!
 //! Scene: `"/Render": Def(LightTransport: (indirect: FinalGather), FinalGather: (rays: 64))`
 //! Sets: `PrepareStages` (`plan_gathering`), `DeriveFromMaps` (`precompute_irradiance`), `LookUp` (`gather_indirect`).
-//! Reads the photon maps, all three of them. Writes contributions, and irradiance beside the maps.
+//! Reads the photon maps, all three of them, or the patches of radiosity. Writes contributions, and irradiance beside the maps.
 //! Counters: `final_gather/rays`, `final_gather/irradiance records`.
 //!
 //! Every diffuse point that the eye sees, directly or in mirrors, sends out rays by its BSDF. At the first diffuse surface
@@ -23,7 +23,7 @@ use bevy_ecs::reflect::ReflectComponent;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use pipeline_core::{Bounce, BounceSystems, PhotonPass, PhotonSystems, Prepare, PrepareSystems};
-use pipeline_data::{Contributions, PhotonDemand};
+use pipeline_data::{Contributions, PatchDemand, PhotonDemand};
 use plan::GatherPlan;
 use scene_format::Range;
 
@@ -60,6 +60,9 @@ pub enum GatherSource {
     /// The photon maps.
     #[default]
     Photons,
+    /// The patches of radiosity, of matt surfaces all over: smooth, and the same from everywhere. Settings are those of
+    /// `Radiosity`.
+    Radiosity,
     /// Paths that go on: without bias, and slow.
     Path,
 }
@@ -73,7 +76,9 @@ pub struct FinalGatherPlugin;
 
 impl Plugin for FinalGatherPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<FinalGather>().init_resource::<PhotonDemand>();
+        app.register_type::<FinalGather>()
+            .init_resource::<PhotonDemand>()
+            .init_resource::<PatchDemand>();
         Contributions::register::<GatherContribution>(app);
         app.add_systems(
             Prepare,

@@ -2,7 +2,7 @@ use super::{FinalGather, GatherSource};
 use bevy_ecs::prelude::*;
 use pipeline_core::RenderClock;
 use pipeline_data::vocabulary::{Findings, SceneReport, component_place};
-use pipeline_data::{BuiltPhotonMaps, PhotonDemand, PrimIndex, ProgressivePasses, RenderSettings};
+use pipeline_data::{BuiltPhotonMaps, PatchDemand, PhotonDemand, PrimIndex, ProgressivePasses, RenderSettings};
 use scene_format::Diagnostic;
 use transport::{GatherMethods, IndirectMethod, MapKind, MapKinds};
 
@@ -11,7 +11,7 @@ use transport::{GatherMethods, IndirectMethod, MapKind, MapKinds};
 pub(super) struct GatherPlan {
     pub(super) rays: u32,
     pub(super) methods: GatherMethods,
-    pub(super) reads_photons: bool,
+    pub(super) incoming: GatherSource,
     pub(super) precomputed: bool,
 }
 
@@ -21,6 +21,7 @@ pub(super) fn plan_gathering(
     settings: Option<Res<RenderSettings>>,
     prims: Query<(&PrimIndex, &FinalGather)>,
     mut demand: ResMut<PhotonDemand>,
+    mut patches: ResMut<PatchDemand>,
     report: Option<SceneReport<'_>>,
 ) {
     commands.remove_resource::<GatherPlan>();
@@ -52,10 +53,11 @@ pub(super) fn plan_gathering(
         // As many as their settings say.
         demand.photons = None;
     }
+    patches.0 |= chosen.incoming == GatherSource::Radiosity;
     commands.insert_resource(GatherPlan {
         rays: chosen.rays,
         methods: GatherMethods::new(&settings.methods, reads_photons),
-        reads_photons,
+        incoming: chosen.incoming,
         precomputed: chosen.precomputed,
     });
 }
@@ -69,7 +71,7 @@ pub(super) fn precomputes(
     clock: Res<RenderClock>,
     progressive: Option<Res<ProgressivePasses>>,
 ) -> bool {
-    plan.is_some_and(|plan| plan.precomputed && plan.reads_photons)
+    plan.is_some_and(|plan| plan.precomputed && plan.incoming == GatherSource::Photons)
         && maps.is_some_and(|maps| maps.0.irradiance.is_none())
         && clock.photons_pending == 0
         && progressive.is_none()

@@ -1,7 +1,7 @@
 use bevy_ecs::prelude::*;
 use film::{Film, FilmWindow};
 use pipeline_core::Report;
-use pipeline_data::{ComposedScene, FilmSums, RenderRequest, RenderSettings};
+use pipeline_data::{ChosenBlocks, ComposedScene, FilmSums, PixelChoice, RenderRequest, RenderSettings};
 use std::fs::File;
 use std::io::{BufReader, ErrorKind};
 use std::path::PathBuf;
@@ -46,6 +46,9 @@ pub(super) fn allocate_film(
         crop_min: settings.crop_min,
         crop_max: settings.crop_max,
     };
+    if let Some(choice) = request.pixels {
+        return allocate_chosen(&mut commands, choice, window, &mut report);
+    }
     let mut resumed = None;
     if let (true, Some(path)) = (request.resume, checkpoint_path(&request)) {
         match File::open(&path) {
@@ -86,6 +89,18 @@ pub(super) fn allocate_film(
         Ok,
     ) {
         Ok(film) => commands.insert_resource(FilmSums(film)),
+        Err(error) => report.fail(format!("error[film]: {error}")),
+    }
+}
+
+/// Makes an empty film of the pixels that were chosen.
+fn allocate_chosen(commands: &mut Commands<'_, '_>, choice: PixelChoice, window: FilmWindow, report: &mut Report) {
+    let chosen = ChosenBlocks(choice.blocks(&window));
+    match Film::of_pixels(window, FilmSums::layout_by_layer(), &chosen.pixels()) {
+        Ok(film) => {
+            commands.insert_resource(FilmSums(film));
+            commands.insert_resource(chosen);
+        }
         Err(error) => report.fail(format!("error[film]: {error}")),
     }
 }

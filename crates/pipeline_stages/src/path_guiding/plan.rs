@@ -26,6 +26,9 @@ pub(super) fn plan_guiding(
     let (Some(settings), Some(mut report)) = (settings, report) else {
         return;
     };
+    if report.request().traced {
+        return;
+    }
     let methods = &settings.methods;
     let mut findings = Findings::default();
     for (prim, written) in &prims {

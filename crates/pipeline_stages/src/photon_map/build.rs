@@ -51,13 +51,8 @@ pub(super) fn probe_walls<M: PhotonMarker>(
     let Some(map) = built.0.get_mut(M::KIND).filter(|_| has_landed) else {
         return;
     };
-    let reach = map.density.max_radius;
-    let tree = &map.tree;
-    let surfaces = &mut map.columns.surface;
-    surfaces.par_iter_mut().enumerate().for_each(|(slot, surface)| {
-        surface.walls = Walls::around(&scene.0, tree.position(slot as u32), surface.normal, reach);
-    });
-    record_items(surfaces.len());
+    look_for_walls(map, &scene.0);
+    record_items(map.tree.len());
 }
 
 /// Makes the place that maps are put in. Until they are there, nothing may read it.
@@ -99,4 +94,13 @@ pub fn photon_map(photons: &[Photon], density: DensitySettings) -> Result<Photon
             }
         });
     Ok(PhotonMap { tree, columns, density })
+}
+
+/// Looks for the walls around each photon, as far as estimates reach.
+pub fn look_for_walls(map: &mut PhotonMap, scene: &transport::Scene) {
+    let PhotonMap { tree, columns, density } = map;
+    columns.surface.par_iter_mut().enumerate().for_each(|(slot, surface)| {
+        let position = tree.position(slot as u32);
+        surface.walls = Walls::around(scene, position, surface.normal, density.max_radius);
+    });
 }

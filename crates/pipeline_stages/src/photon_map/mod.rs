@@ -44,7 +44,7 @@ use pipeline_core::{
 use pipeline_data::{BuiltPhotonMaps, CausticPhoton, Contributions, DirectPhoton, IndirectPhoton, PhotonDemand};
 use run::{PhotonPlan, PhotonRun};
 
-pub use build::photon_map;
+pub use build::{look_for_walls, photon_map};
 pub use gather::PhotonContribution;
 pub use plan::photon_key;
 pub use settings::{CausticPhotonMap, DirectPhotonMap, IndirectPhotonMap, PhotonFilter, PhotonMapSettings};

@@ -111,19 +111,27 @@ fn settings(
     let methods = methods.unwrap_or(&default);
     let resolution = request.resolution.unwrap_or(film.resolution);
     let [x0, y0, x1, y1] = request.crop.unwrap_or([0, 0, resolution.x, resolution.y]);
+    let methods = transport::Methods {
+        direct: methods.direct.into(),
+        specular: methods.specular == SpecularMethod::Trace,
+        caustic: methods.caustic.into(),
+        indirect: methods.indirect.into(),
+        specular_alpha: methods.specular_alpha,
+        max_depth: render.max_depth.unwrap_or(u32::MAX),
+    };
+    let samples = match (request.samples, request.until) {
+        (Some(samples), _) => samples,
+        (None, Some(_)) => MOST_SAMPLES,
+        (None, None) => render.samples,
+    };
+    // Chosen pixels are there to be judged, which takes all batches.
+    let is_chosen = request.pixels.is_some();
     RenderSettings {
-        methods: transport::Methods {
-            direct: methods.direct.into(),
-            specular: methods.specular == SpecularMethod::Trace,
-            caustic: methods.caustic.into(),
-            indirect: methods.indirect.into(),
-            specular_alpha: methods.specular_alpha,
-            max_depth: render.max_depth.unwrap_or(u32::MAX),
-        },
-        samples: match (request.samples, request.until) {
-            (Some(samples), _) => samples,
-            (None, Some(_)) => MOST_SAMPLES,
-            (None, None) => render.samples,
+        methods: if request.traced { methods.traced() } else { methods },
+        samples: if is_chosen {
+            samples.max(film::LEAST_AUDIT_SAMPLES)
+        } else {
+            samples
         },
         passes: render.passes,
         seed: request.seed.unwrap_or(render.seed),
@@ -132,7 +140,7 @@ fn settings(
         crop_max: UVec2::new(x1, y1),
         filter: film.filter.into(),
         filter_radius: film.filter_radius,
-        variance: film.variance,
+        variance: film.variance || is_chosen,
         exposure: film.exposure,
         tone_map: film.tone_map.into(),
         render_prim: index.0,
@@ -183,7 +191,7 @@ fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest,
         let note = "a crop is x0 y0 x1 y1 in pixels from the top left; the last two are one beyond its last pixel";
         findings.push(Diagnostic::error("bad-crop", message).note(note));
     } else {
-        let bytes = film::memory_bytes(&window, &FilmSums::layout(settings.variance));
+        let bytes = film_bytes(&window, settings, request);
         if bytes > MOST_FILM_BYTES {
             let message = format!(
                 "a film of {} × {} pixels takes {} GiB of memory; at most {} GiB are used",
@@ -198,6 +206,16 @@ fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest,
             findings.push_at(place.filter(|_| written), finding);
         }
     }
+}
+
+/// Memory of the film: of the whole window, or of the pixels that were chosen.
+fn film_bytes(window: &FilmWindow, settings: &RenderSettings, request: &RenderRequest) -> u64 {
+    let Some(choice) = request.pixels else {
+        return film::memory_bytes(window, &FilmSums::layout(settings.variance));
+    };
+    let most = u64::from(choice.count) * u64::from(choice.side) * u64::from(choice.side);
+    let pixels = window.pixel_count().min(usize::try_from(most).unwrap_or(usize::MAX));
+    film::memory_of_pixels(pixels, &FilmSums::layout_by_layer())
 }
 
 /// Finds the camera that `Render` names: the row of its prim, and its place.

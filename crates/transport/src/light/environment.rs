@@ -44,6 +44,13 @@ impl Environment {
         }
     }
 
+    /// Bounds the radiance that arrives from anywhere, in any channel.
+    pub(super) fn brightest(&self) -> f32 {
+        let texels = self.map.iter().flat_map(|map| &map.texels);
+        let largest = texels.map(|texel| texel.max_element()).reduce(f32::max);
+        self.radiance.max_element() * largest.unwrap_or(1.0)
+    }
+
     /// Chooses a direction roughly in proportion to radiance; returns it with its density per solid angle.
     #[inline]
     pub(crate) fn sample(&self, u: Vec2) -> (Vec3, f32) {

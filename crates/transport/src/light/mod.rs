@@ -130,6 +130,13 @@ impl LightTable {
         self.lights.is_empty()
     }
 
+    /// The largest radiance, in any channel, that a ray may meet, W·m⁻²·sr⁻¹; infinite where light comes from points, which
+    /// no ray meets.
+    #[must_use]
+    pub fn brightest(&self) -> f32 {
+        self.lights.iter().map(Light::brightest).fold(0.0, f32::max)
+    }
+
     /// Power of all lights together, in W (mean of the channels).
     #[must_use]
     pub fn power(&self) -> f64 {

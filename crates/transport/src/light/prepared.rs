@@ -60,6 +60,11 @@ impl SurfaceRadiance {
         self.mean * self.mean_coverage
     }
 
+    /// Bounds the radiance of every point, channel by channel.
+    fn brightest(&self) -> Rgb {
+        self.texture.as_ref().map_or(self.mean, |texture| texture.max_rgb())
+    }
+
     /// How much of the surface is there at a point, in [0, 1].
     #[inline]
     fn coverage_at(&self, sampler: &SurfaceSampler, primitive: u32, p: Vec3, uv: Vec2, time: f32) -> f32 {
@@ -155,6 +160,17 @@ impl Light {
             Self::Distant(light) if light.is_point() => disc * f64::from(light.radiance.mean()),
             Self::Distant(light) => disc * f64::from(light.radiance.mean() / light.pdf()),
             Self::Environment(environment) => disc * f64::from(environment.fluence().mean()),
+        }
+    }
+
+    /// The largest radiance, in any channel, that a ray may meet; infinite where none meets the light.
+    pub(super) fn brightest(&self) -> f32 {
+        match self {
+            Self::Point { .. } | Self::Spot { .. } => f32::INFINITY,
+            Self::Area { shine, .. } => shine.brightest().max_element(),
+            Self::Distant(light) if light.is_point() => f32::INFINITY,
+            Self::Distant(light) => light.radiance.max_element(),
+            Self::Environment(environment) => environment.brightest(),
         }
     }
 

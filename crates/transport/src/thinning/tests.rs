@@ -1,8 +1,9 @@
 use super::{PhotonRows, thin_photons};
-use crate::density::{DensityFilter, DensityScratch, DensitySettings, PhotonColumns, PhotonMap};
+use crate::density::{DensityFilter, DensityScratch, DensitySettings, PhotonColumns, PhotonMap, PhotonSurface};
+use crate::scene::Scene;
 use glam::Vec3;
 use radiometry::{Rgb, SampleStream, StageKey};
-use spatial::PhotonTree;
+use spatial::{PhotonTree, RayScene};
 
 /// Photons on a floor of 1 m²: the half at x < 0.5 has a tenth of them.
 const PHOTONS: u32 = 40_000;
@@ -63,7 +64,8 @@ impl Photons {
         let tree = PhotonTree::build(&self.position).expect("finite photons");
         let mut columns = PhotonColumns::default();
         tree.in_query_order(&self.flux, &mut columns.flux);
-        tree.in_query_order(&self.normal, &mut columns.normal);
+        let surfaces: Vec<_> = self.normal.iter().map(|normal| PhotonSurface::open(*normal)).collect();
+        tree.in_query_order(&surfaces, &mut columns.surface);
         let density = DensitySettings {
             nearest,
             max_radius: 0.1,
@@ -144,13 +146,19 @@ fn irradiance_is_that_of_all_photons() {
     let photons = floor();
     let after = photons.after(&photons.thinned(DENSE / OF as f32));
     let (map, thinned) = (photons.map(NEAREST * OF), after.map(NEAREST));
+    // No walls anywhere.
+    let rays = RayScene::build(vec![], vec![]).expect("an empty scene");
+    let scene = Scene::new(rays, vec![], vec![], vec![]);
     let mut scratch = [DensityScratch::default(), DensityScratch::default()];
     let (mut sum, mut squares, mut count) = (0.0, 0.0, 0.0);
     for i in 0..1000 {
         let [x, z, ..] = numbers(PHOTONS + i);
         let site = Vec3::new(0.62 + 0.26 * x, 0.0, 0.12 + 0.76 * z);
-        let [before, after] = [(&map, 0), (&thinned, 1)]
-            .map(|(map, i)| map.estimate_irradiance(site, Vec3::Y, 1e-7, &mut scratch[i]).value.g);
+        let [before, after] = [(&map, 0), (&thinned, 1)].map(|(map, i)| {
+            map.estimate_irradiance(&scene, site, Vec3::Y, 1e-7, &mut scratch[i])
+                .value
+                .g
+        });
         let off = f64::from(after / before) - 1.0;
         sum += off;
         squares += off * off;

@@ -1,0 +1,51 @@
+use super::Radiosity;
+use bevy_ecs::prelude::*;
+use pipeline_data::vocabulary::{Findings, SceneReport, component_place};
+use pipeline_data::{PatchDemand, PrimIndex, RenderSettings, SolvedPatches};
+use scene_format::Diagnostic;
+use transport::IndirectMethod;
+
+/// How radiosity is solved. Written by `plan_radiosity`; present where it is.
+#[derive(Resource, Clone, Debug)]
+pub(super) struct RadiosityPlan {
+    pub(super) settings: Radiosity,
+    pub(super) seed: u64,
+}
+
+/// Takes up the settings, where somebody wants the solution.
+pub(super) fn plan_radiosity(
+    mut commands: Commands,
+    settings: Option<Res<RenderSettings>>,
+    prims: Query<(&PrimIndex, &Radiosity)>,
+    mut demand: ResMut<PatchDemand>,
+    report: Option<SceneReport<'_>>,
+) {
+    commands.remove_resource::<RadiosityPlan>();
+    commands.remove_resource::<SolvedPatches>();
+    let is_demanded = std::mem::take(&mut demand.0);
+    let (Some(settings), Some(mut report)) = (settings, report) else {
+        return;
+    };
+    let is_chosen = is_demanded || settings.methods.indirect == IndirectMethod::Radiosity;
+    let mut findings = Findings::default();
+    let mut chosen = Radiosity::default();
+    for (prim, written) in &prims {
+        let unused = if prim.0 != settings.render_prim {
+            "`Radiosity` stands on a prim that carries no `Render`; it has no effect there"
+        } else if !is_chosen {
+            "`Radiosity` has no effect: neither `LightTransport.indirect` nor `FinalGather.incoming` is `Radiosity`"
+        } else {
+            chosen = written.clone();
+            continue;
+        };
+        let place = component_place(report.scene(), prim.0, "Radiosity");
+        findings.push_at(place, Diagnostic::warning("unused-settings", unused));
+    }
+    report.file(findings);
+    if is_chosen {
+        commands.insert_resource(RadiosityPlan {
+            settings: chosen,
+            seed: settings.seed,
+        });
+    }
+}

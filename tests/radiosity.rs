@@ -1,0 +1,153 @@
+//! Radiosity in whole pictures: closed furnaces, the Cornell box against its reference, threads, refusals.
+
+#![expect(clippy::print_stdout, reason = "comparisons report their figures")]
+
+use film::{RgbImage, block_means, read_exr};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// Read where the eye looks.
+const SEEN: &[&str] = &["/Render.LightTransport.indirect=Radiosity"];
+/// Read at the ends of gather rays.
+const GATHERED: &[&str] = &[
+    "/Render.LightTransport.indirect=FinalGather",
+    "/Render.FinalGather.incoming=Radiosity",
+    "/Render.FinalGather.rays=64",
+];
+
+fn scene(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/references");
+    folder.join(name)
+}
+
+fn run(name: &str, options: &[&str], fields: &[&str]) -> Output {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_pipeline"));
+    program
+        .arg("run")
+        .arg(scene(name).join("scene.ron"))
+        .arg("--quiet")
+        .args(options);
+    program.args(fields.iter().flat_map(|field| ["--set", field]));
+    program.output().expect("the program starts")
+}
+
+fn rendered(folder: &TempDir, name: &str, options: &[&str], fields: &[&str]) -> PathBuf {
+    let path = folder.path().join("image.exr");
+    let output = path.to_str().expect("a path of letters");
+    let ran = run(name, &[options, &["-o", output]].concat(), fields);
+    assert!(ran.status.success(), "{name}: {}", String::from_utf8_lossy(&ran.stderr));
+    path
+}
+
+fn render(name: &str, options: &[&str], fields: &[&str]) -> RgbImage {
+    let folder = tempfile::tempdir().expect("a folder for the image");
+    let path = rendered(&folder, name, options, fields);
+    read_exr(&path).expect("a valid image").rgb("").expect("R, G, B")
+}
+
+fn means(image: &RgbImage) -> [f64; 3] {
+    [0, 1, 2].map(|c| image.pixels.iter().map(|p| f64::from(p[c])).sum::<f64>() / image.pixels.len() as f64)
+}
+
+#[test]
+fn furnaces_shine_alike() {
+    /// What the mean of the image may be off by.
+    const MEAN: f64 = 0.005;
+    for name in ["furnace", "furnace80"] {
+        for (label, fields) in [("seen", SEEN), ("gathered", GATHERED)] {
+            let image = render(name, &["--resolution", "64x64", "--samples", "16"], fields);
+            let mean = means(&image)[1];
+            let blocks = block_means(&image, 8);
+            let worst = blocks.pixels.iter().map(|p| (p[1] - 1.0).abs()).fold(0.0, f32::max);
+            println!("{name}, {label}: {mean:.4}, worst block off by {worst:.4}");
+            assert!(
+                (mean - 1.0).abs() < MEAN && worst < 0.03,
+                "{name}, {label}: {mean}, {worst}"
+            );
+        }
+    }
+}
+
+/// How far the Cornell box is from its reference: the means of the image, and blocks at the median and 95th percentile.
+fn assert_cornell(label: &str, side: u32, samples: &str, fields: &[&str], [most_mean, median, high]: [f64; 3]) {
+    let resolution = format!("{side}x{side}");
+    let image = render("cornell", &["--resolution", &resolution, "--samples", samples], fields);
+    let reference = read_exr(&scene("cornell").join("reference.exr")).expect("a valid image");
+    let reference = reference.rgb("").expect("R, G, B");
+    let off = |c: usize| means(&image)[c] / means(&reference)[c] - 1.0;
+    let off = [off(0), off(1), off(2)];
+    let (blocks, expected) = (
+        block_means(&image, 8),
+        block_means(&reference, 8 * reference.width / side),
+    );
+    let relative = |(ours, theirs): (&[f32; 3], &[f32; 3])| {
+        let channel = |c: usize| match theirs[c] {
+            0.0 => 0.0,
+            theirs => f64::from((ours[c] - theirs).abs() / theirs),
+        };
+        channel(0).max(channel(1)).max(channel(2))
+    };
+    let mut errors: Vec<f64> = blocks.pixels.iter().zip(&expected.pixels).map(relative).collect();
+    errors.sort_by(f64::total_cmp);
+    let quantile = |share: f64| errors[(share * (errors.len() - 1) as f64).round() as usize];
+    let found = [quantile(0.5), quantile(0.95), quantile(1.0)];
+    println!("cornell, {label}, {resolution}: means off by {off:.4?}, blocks by {found:.4?}");
+    assert!(off.iter().all(|off| off.abs() < most_mean), "{label}: {off:?}");
+    assert!(found[0] < median && found[1] < high, "{label}: {found:?}");
+}
+
+#[test]
+fn cornell_meets_its_reference() {
+    assert_cornell("seen", 64, "64", SEEN, [0.01, 0.02, 0.06]);
+    assert_cornell("gathered", 64, "64", GATHERED, [0.01, 0.015, 0.04]);
+}
+
+#[test]
+#[ignore = "takes minutes; .ci/full runs it"]
+fn cornell_at_full_size_meets_its_reference() {
+    assert_cornell("seen", 256, "64", SEEN, [0.005, 0.03, 0.08]);
+    assert_cornell("gathered", 256, "64", GATHERED, [0.005, 0.02, 0.05]);
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let options = ["--resolution", "24x24", "--samples", "2"];
+    let coarse = "/Render.Radiosity.patch_size=0.3";
+    for fields in [SEEN, GATHERED] {
+        let fields = [fields, &[coarse]].concat();
+        let picture = |threads: &str| {
+            let folder = tempfile::tempdir().expect("a folder for the image");
+            let options = [&options[..], &["--threads", threads, "--tile-size", "7"]].concat();
+            std::fs::read(rendered(&folder, "cornell_glass", &options, &fields)).expect("a file that was written")
+        };
+        let first = picture("1");
+        assert!(["2", "3"].iter().all(|threads| picture(threads) == first), "{fields:?}");
+    }
+}
+
+#[test]
+fn what_is_too_much_is_refused_with_a_remedy() {
+    let tiny = [SEEN, &["/Render.Radiosity.patch_size=0.0001"]].concat();
+    let ran = run("cornell", &["-o", "none.exr"], &tiny);
+    let said = String::from_utf8_lossy(&ran.stderr);
+    assert_eq!(ran.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("too-large") && said.contains("`Radiosity.patch_size`"),
+        "{said}"
+    );
+    let folder = tempfile::tempdir().expect("a folder for the image");
+    let output = folder.path().join("image.exr");
+    let output = output.to_str().expect("a path of letters");
+    let unused = ["/Render.Radiosity.rays=8"];
+    let ran = run(
+        "cornell",
+        &["--resolution", "8x8", "--samples", "1", "-o", output],
+        &unused,
+    );
+    let said = String::from_utf8_lossy(&ran.stderr);
+    assert!(
+        said.contains("unused-settings") && said.contains("`Radiosity` has no effect"),
+        "{said}"
+    );
+}
