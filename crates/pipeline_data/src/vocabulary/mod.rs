@@ -9,7 +9,7 @@
 //! radiometric. Whatever places a prim is in `f64`, so that a scene ten kilometres away keeps its precision.
 //!
 //! Deliberately absent is what no stage renders yet, volumes, and what belongs to one stage alone, which registers it:
-//! lenses, shutters, photon maps. A field that exists and cannot be served yet (`Render.passes`) is refused with its place.
+//! lenses, shutters, photon maps.
 
 mod camera;
 mod film;
