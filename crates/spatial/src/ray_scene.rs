@@ -128,6 +128,12 @@ impl RayScene {
         self.instances[instance as usize].bounds
     }
 
+    /// True when an instance moves while the shutter is open.
+    #[must_use]
+    pub fn moves(&self, instance: u32) -> bool {
+        self.instances[instance as usize].moves()
+    }
+
     /// How many instances there are.
     #[must_use]
     pub fn instance_count(&self) -> usize {
