@@ -6,6 +6,7 @@
 //!
 //! It deliberately holds no formula: those are one layer down, in crates that know no ECS.
 
+mod irradiance;
 mod mesh_store;
 mod photon;
 mod photon_file;
@@ -16,6 +17,7 @@ mod stream;
 mod texture_store;
 pub mod vocabulary;
 
+pub use irradiance::{BuiltIrradianceCache, IrradianceRecord};
 pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
 pub use photon::{
     BuiltPhotonMaps, CausticPhoton, DirectPhoton, IndirectPhoton, Photon, PhotonDemand, PhotonMarker, ProgressivePasses,

@@ -14,6 +14,7 @@
 //! | [`depth_of_field`] | camera rays through a lens |
 //! | [`photon_map`] | photons: emitted, stored as entities in three maps, gathered |
 //! | [`final_gather`] | indirect light by rays that read the photon maps |
+//! | [`irradiance_cache`] | indirect light at few places, as entities, and interpolated between them |
 //! | [`path_guiding`] | directions of paths, drawn to where photons come from |
 //! | [`path_tracing`] | intersection, emission, direct light, scattering |
 //! | [`image`] | film, auxiliary channels, image files and checkpoints |
@@ -35,6 +36,7 @@ pub mod depth_of_field;
 pub mod final_gather;
 pub mod geometry;
 pub mod image;
+pub mod irradiance_cache;
 pub mod load;
 pub mod motion_blur;
 pub mod path_guiding;
@@ -56,6 +58,7 @@ impl Plugin for DefaultStages {
             depth_of_field::DepthOfFieldPlugin,
             photon_map::PhotonMapPlugin,
             final_gather::FinalGatherPlugin,
+            irradiance_cache::IrradianceCachePlugin,
             path_guiding::PathGuidingPlugin,
             path_tracing::PathTracingPlugin,
             image::ImagePlugin,
@@ -69,6 +72,7 @@ impl Plugin for DefaultStages {
                 image::ImageSystems,
                 path_guiding::PathGuidingSystems,
                 final_gather::FinalGatherSystems,
+                irradiance_cache::IrradianceCacheSystems,
                 photon_map::PhotonMapSystems,
                 camera::CameraSystems,
                 depth_of_field::DepthOfFieldSystems,

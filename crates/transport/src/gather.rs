@@ -83,22 +83,38 @@ pub fn gather_indirect(
         };
         // What leaves by an S lobe is specular light, traced elsewhere.
         if !path.class.ends_as_specular() {
-            sum += light_along(scene, methods, maps, path, ray, scratch);
+            sum += light_along(scene, methods, maps, path, ray, scratch).radiance;
         }
     }
     sum * (1.0 / rays as f32)
 }
 
-/// What one gather ray sees.
-fn light_along(
+/// What one ray sees that left a D vertex.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenLight {
+    /// Radiance in W·m⁻²·sr⁻¹, weighted with what the path carries: of E D S* (D|V)(S|D|V)* L alone.
+    pub(crate) radiance: Rgb,
+    /// To the first surface, S or not, in metres; infinite where there is none.
+    pub(crate) distance: f32,
+}
+
+/// Follows one ray from a D vertex for the indirect light that it sees.
+///
+/// - `path`: as it left the vertex.
+pub(crate) fn light_along(
     scene: &Scene,
     methods: &GatherMethods,
     maps: Option<&PhotonMaps>,
     mut path: Path,
     mut ray: Ray,
     scratch: &mut PhotonMapsScratch,
-) -> Rgb {
+) -> SeenLight {
     let mut light = Rgb::BLACK;
+    let mut distance = None;
+    let seen = |radiance, distance: Option<f32>| SeenLight {
+        radiance,
+        distance: distance.unwrap_or(f32::INFINITY),
+    };
     // Since the last D vertex, over any S.
     let mut length = 0.0;
     loop {
@@ -111,8 +127,11 @@ fn light_along(
         if let Some((_, emitted)) = emitted_light(scene, methods, &path, &ray, hit.as_ref()) {
             light += emitted;
         }
-        let Some(hit) = hit else { return light };
+        let Some(hit) = hit else {
+            return seen(light, distance);
+        };
         length += ray.origin.distance(hit.p);
+        distance.get_or_insert(length);
         let vertex = Vertex::new(scene, &hit, -ray.direction, &path.medium);
         let mut is_read = false;
         if let (Some(maps), true) = (maps, vertex.bsdf.has_diffuse() && path.depth < methods.max_depth) {
@@ -128,14 +147,14 @@ fn light_along(
         if !is_read {
             sample_direct_light_at(scene, methods, &path, ray.time, &vertex, |_, direct| light += direct);
         } else if !vertex.bsdf.has_specular() {
-            return light;
+            return seen(light, distance);
         }
         let Some(next) = scatter_at(scene, methods, &mut path, ray.time, &vertex) else {
-            return light;
+            return seen(light, distance);
         };
         if !path.class.ends_as_specular() {
             if is_read {
-                return light;
+                return seen(light, distance);
             }
             length = 0.0;
         }

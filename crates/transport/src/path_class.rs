@@ -187,6 +187,8 @@ pub enum IndirectMethod {
     PhotonMap,
     /// Rays over the hemisphere of the first D vertex, and what the next D vertex reflects at their ends.
     FinalGather,
+    /// Irradiance over the hemisphere of the first D vertex, interpolated between records.
+    IrradianceCache,
     /// The layer is black.
     Off,
 }
@@ -195,7 +197,7 @@ impl IndirectMethod {
     /// True when paths end at their first D vertex, because another estimator knows all light that comes over a second.
     #[must_use]
     pub const fn replaces_paths(self) -> bool {
-        matches!(self, Self::PhotonMap | Self::FinalGather)
+        matches!(self, Self::PhotonMap | Self::FinalGather | Self::IrradianceCache)
     }
 }
 
@@ -278,12 +280,16 @@ impl Methods {
         }
     }
 
-    /// The layer that gather rays add to which start at a D vertex that a path of class `class` reached; `None` where
-    /// none start.
+    /// The layer that light from the hemisphere of a D vertex adds to which a path of class `class` reached, by gather rays
+    /// or from the irradiance cache; `None` where it is not asked for.
     #[must_use]
     pub fn gather_layer(&self, class: PathClass) -> Option<Layer> {
         let layer = class.after(Event::Diffuse).after(Event::Diffuse).layer();
-        (self.indirect == IndirectMethod::FinalGather && class.is_specular_only() && self.shows(layer)).then_some(layer)
+        let gathers = matches!(
+            self.indirect,
+            IndirectMethod::FinalGather | IndirectMethod::IrradianceCache
+        );
+        (gathers && class.is_specular_only() && self.shows(layer)).then_some(layer)
     }
 
     /// True when a path of this class can still contribute to anything by meeting light, however it goes on.
@@ -379,6 +385,7 @@ mod tests {
                     IndirectMethod::PathTrace,
                     IndirectMethod::PhotonMap,
                     IndirectMethod::FinalGather,
+                    IndirectMethod::IrradianceCache,
                 ] {
                     all.push(Methods {
                         direct,

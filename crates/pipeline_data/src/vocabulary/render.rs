@@ -133,6 +133,8 @@ pub enum IndirectMethod {
     PhotonMap,
     /// Rays over the hemisphere that read all photon maps where they end: smooth, and sharp in corners.
     FinalGather,
+    /// Irradiance computed well at few places and interpolated between them: smooth, and fast where light changes slowly.
+    IrradianceCache,
     /// Not at all.
     Off,
 }
@@ -143,6 +145,7 @@ impl From<IndirectMethod> for transport::IndirectMethod {
             IndirectMethod::PathTrace => Self::PathTrace,
             IndirectMethod::PhotonMap => Self::PhotonMap,
             IndirectMethod::FinalGather => Self::FinalGather,
+            IndirectMethod::IrradianceCache => Self::IrradianceCache,
             IndirectMethod::Off => Self::Off,
         }
     }

@@ -121,7 +121,9 @@ fn refusal(component: &str) -> String {
 fn a_method_that_does_not_exist_names_those_that_do() {
     let indirect = refusal("LightTransport: (indirect: IrradianceCache)");
     assert!(
-        indirect.contains("`LightTransport.indirect` must be one of PathTrace, PhotonMap, FinalGather, Off"),
+        indirect.contains(
+            "`LightTransport.indirect` must be one of PathTrace, PhotonMap, FinalGather, IrradianceCache, Off"
+        ),
         "{indirect}"
     );
     assert!(indirect.contains("scene.ron:1:"), "{indirect}");

@@ -97,16 +97,10 @@ fn spheres_that_hold_nothing_are_refused() {
     }
     for bad in [f32::NAN, f32::INFINITY] {
         let position = Vec3::new(0.0, bad, 0.0);
-        assert_eq!(
-            octree.insert(position, 1.0),
-            Err(RecordOctreeError::PositionNotFinite)
-        );
+        assert_eq!(octree.insert(position, 1.0), Err(RecordOctreeError::PositionNotFinite));
         assert!(octree.candidates(position).next().is_none());
     }
-    assert_eq!(
-        octree.insert(Vec3::splat(100.0), 1.0),
-        Err(RecordOctreeError::Outside)
-    );
+    assert_eq!(octree.insert(Vec3::splat(100.0), 1.0), Err(RecordOctreeError::Outside));
     assert!(octree.is_empty() && octree.candidates(Vec3::splat(100.0)).next().is_none());
     assert_eq!(octree.validate(), Ok(()));
 }

@@ -76,13 +76,7 @@ impl RecordOctree {
         }
     }
 
-    fn validate_leaf(
-        &self,
-        node: usize,
-        centre: Vec3,
-        half: f32,
-        above: &[u32],
-    ) -> Result<(), InvalidRecordOctree> {
+    fn validate_leaf(&self, node: usize, centre: Vec3, half: f32, above: &[u32]) -> Result<(), InvalidRecordOctree> {
         let own = &self.nodes[node].rows;
         let mut held = vec![0_u8; self.len()];
         for row in own.iter().chain(above) {

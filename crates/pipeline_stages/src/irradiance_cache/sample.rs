@@ -1,0 +1,56 @@
+use super::fill::CacheFill;
+use super::plan::CachePlan;
+use bevy_ecs::prelude::*;
+use pipeline_core::{Counter, Counters, record_items};
+use pipeline_data::{BuiltIrradianceCache, BuiltPhotonMaps, RenderSettings, TransportScene};
+use rayon::prelude::*;
+use transport::{HemisphereSample, IrradianceRecord, PhotonMaps, PhotonMapsScratch, Site, summarize};
+
+/// The counter of this system, asked for once.
+pub(super) struct RayCounter(Counter);
+
+impl FromWorld for RayCounter {
+    fn from_world(world: &mut World) -> Self {
+        Self(world.resource_mut::<Counters>().counter("irradiance_cache/rays"))
+    }
+}
+
+/// Sends rays over the hemisphere of each chosen place and makes records of what they saw.
+pub(super) fn sample_records(
+    mut fill: ResMut<CacheFill>,
+    plan: Res<CachePlan>,
+    settings: Res<RenderSettings>,
+    scene: Res<TransportScene>,
+    cache: Res<BuiltIrradianceCache>,
+    built: Option<Res<BuiltPhotonMaps>>,
+    counter: Local<RayCounter>,
+) {
+    let chosen = std::mem::take(&mut fill.chosen);
+    if chosen.is_empty() {
+        return;
+    }
+    // Without any photon there is nothing to read, and nothing is reflected.
+    let empty = PhotonMaps::default();
+    let maps = plan
+        .reads_photons
+        .then(|| built.as_ref().map_or(&empty, |built| &built.0));
+    let first = u64::from(fill.next_number) | u64::from(fill.generation) << 32;
+    let record = |(i, site): (usize, &Site)| -> Option<IrradianceRecord> {
+        let number = (settings.seed, first + i as u64);
+        let samples: Vec<HemisphereSample> = (0..plan.hemisphere.rings())
+            .into_par_iter()
+            .map_init(PhotonMapsScratch::default, |scratch, ring| {
+                let hemisphere = &plan.hemisphere;
+                hemisphere.sample_ring(&scene.0, &plan.methods, maps, site, number, ring, scratch)
+            })
+            .flatten_iter()
+            .collect();
+        let record = summarize(&plan.hemisphere, &samples, site, &plan.spacing, plan.settings.gradients)?;
+        cache.0.accepts(&record).ok().map(|()| record)
+    };
+    let sampled: Vec<Option<IrradianceRecord>> = chosen.par_iter().enumerate().map(record).collect();
+    let rays = chosen.len() * plan.hemisphere.rays() as usize;
+    record_items(rays);
+    counter.0.add(rays as u64);
+    fill.sampled = sampled.into_iter().flatten().collect();
+}
