@@ -11,9 +11,9 @@ const FILM_STAGE: StageKey = StageKey::new("irradiance_cache/film");
 /// Key of those of the paths from there.
 const PATH_STAGE: StageKey = StageKey::new("irradiance_cache/paths");
 
-/// Distances between camera rays, in pixels. The last come twice: rays of a pixel are at random places of it, and a second one
-/// finds most of what the first has missed.
-const STEPS: [u32; 7] = [32, 16, 8, 4, 2, 1, 1];
+/// Distances between camera rays, in pixels. Rays are at random places of their pixels, so that the last rounds find what those
+/// before them have missed; they cost little.
+const STEPS: [u32; 10] = [32, 16, 8, 4, 2, 1, 1, 1, 1, 1];
 
 /// Most camera rays at a time, so that memory does not grow with the picture.
 const WAVE_RAYS: u32 = 1 << 16;

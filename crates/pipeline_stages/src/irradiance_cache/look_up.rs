@@ -7,8 +7,10 @@ use pipeline_data::{
 use rayon::prelude::*;
 use transport::{CacheAnswer, GatherMethods, PhotonMapsScratch, Vertex};
 
-/// Rays that are traced where the cache has no answer.
-const RAYS_OF_A_MISS: u32 = 4;
+/// Rays that are traced where no record holds: many, since that is rare and would show as specks among what is smooth.
+const RAYS_WHERE_MISSING: u32 = 64;
+/// Rays that are traced where the cache cannot be asked.
+const RAYS_WHERE_UNSUITED: u32 = 4;
 
 /// Indirect light from the irradiance cache. Written by `look_up_irradiance`.
 #[derive(Component, Clone, Debug, Default)]
@@ -68,13 +70,19 @@ pub(super) fn look_up_irradiance(
                 }
                 lookups += 1;
                 let answer = transport::reflect_irradiance(&scene.0, &cache.0, path, ray.time, &vertex);
-                let light = if let CacheAnswer::Light(light) = answer {
-                    light
-                } else {
-                    missing += u64::from(answer == CacheAnswer::Missing);
-                    unsuited += u64::from(answer == CacheAnswer::Unsuited);
-                    let rays = RAYS_OF_A_MISS;
+                let mut trace = |rays| {
                     transport::gather_indirect(&scene.0, &traced, None, path, ray.time, &vertex, rays, scratch)
+                };
+                let light = match answer {
+                    CacheAnswer::Light(light) => light,
+                    CacheAnswer::Missing => {
+                        missing += 1;
+                        trace(RAYS_WHERE_MISSING)
+                    }
+                    CacheAnswer::Unsuited => {
+                        unsuited += 1;
+                        trace(RAYS_WHERE_UNSUITED)
+                    }
                 };
                 if !light.is_black() {
                     log.0.add(path.slot, layer, light);
