@@ -1,5 +1,6 @@
+use crate::irradiance::{CacheAnswer, IrradianceCache, reflect_coarsely};
 use crate::path::{Path, arrive, emitted_light, sample_direct_light_at, scatter_at};
-use crate::path_class::{CausticMethod, DirectMethod, IndirectMethod, Methods};
+use crate::path_class::{CausticMethod, DirectMethod, Event, IndirectMethod, Methods, PathClass};
 use crate::photon::MapKind;
 use crate::photon_maps::{PhotonMaps, PhotonMapsScratch};
 use crate::scene::Scene;
@@ -17,6 +18,19 @@ pub struct GatherMethods {
     shallow: Methods,
     /// After it, where a ray was too short for the photons at its end.
     deep: Methods,
+    /// After a D vertex whose indirect light a cache has told, as seen from there.
+    told: Methods,
+}
+
+/// What says how much light is reflected where a gather ray ends.
+#[derive(Clone, Copy)]
+pub(crate) enum RayEnd<'a> {
+    /// Nothing: rays go on as paths.
+    Path,
+    /// Photon maps tell all of it, where the ray is long enough.
+    Photons(&'a PhotonMaps),
+    /// Records of irradiance tell its indirect part, where some hold; the rest is traced.
+    Records(&'a IrradianceCache),
 }
 
 impl GatherMethods {
@@ -40,6 +54,12 @@ impl GatherMethods {
         Self {
             shallow,
             deep: Methods { caustic, ..shallow },
+            told: Methods {
+                direct: DirectMethod::SampleLights,
+                caustic: CausticMethod::Trace,
+                indirect: IndirectMethod::IrradianceCache,
+                ..shallow
+            },
         }
     }
 }
@@ -72,6 +92,7 @@ pub fn gather_indirect(
     rays: u32,
     scratch: &mut PhotonMapsScratch,
 ) -> Rgb {
+    let end = maps.map_or(RayEnd::Path, RayEnd::Photons);
     let mut sum = Rgb::BLACK;
     for number in 0..rays {
         let mut path = Path {
@@ -83,7 +104,7 @@ pub fn gather_indirect(
         };
         // What leaves by an S lobe is specular light, traced elsewhere.
         if !path.class.ends_as_specular() {
-            sum += light_along(scene, methods, maps, path, ray, scratch).radiance;
+            sum += light_along(scene, methods, end, path, ray, scratch).radiance;
         }
     }
     sum * (1.0 / rays as f32)
@@ -104,7 +125,7 @@ pub(crate) struct SeenLight {
 pub(crate) fn light_along(
     scene: &Scene,
     methods: &GatherMethods,
-    maps: Option<&PhotonMaps>,
+    end: RayEnd<'_>,
     mut path: Path,
     mut ray: Ray,
     scratch: &mut PhotonMapsScratch,
@@ -117,9 +138,13 @@ pub(crate) fn light_along(
     };
     // Since the last D vertex, over any S.
     let mut length = 0.0;
+    // Since a D vertex whose indirect light is known, all there is to find is its direct light and its caustics.
+    let mut is_told = false;
     loop {
         let hit = arrive(scene, &mut path, &ray);
-        let methods = if path.class.is_deep() {
+        let methods = if is_told {
+            &methods.told
+        } else if path.class.is_deep() {
             &methods.deep
         } else {
             &methods.shallow
@@ -134,7 +159,15 @@ pub(crate) fn light_along(
         distance.get_or_insert(length);
         let vertex = Vertex::new(scene, &hit, -ray.direction, &path.medium);
         let mut is_read = false;
-        if let (Some(maps), true) = (maps, vertex.bsdf.has_diffuse() && path.depth < methods.max_depth) {
+        let mut tells = false;
+        let reflects = vertex.bsdf.has_diffuse() && path.depth < methods.max_depth;
+        if let (RayEnd::Records(cache), true) = (end, reflects && !is_told) {
+            if let CacheAnswer::Light(known) = reflect_coarsely(scene, cache, &path, ray.time, &vertex) {
+                light += known;
+                tells = true;
+            }
+        }
+        if let (RayEnd::Photons(maps), true) = (end, reflects) {
             let all = maps.estimate_all(&vertex, scratch);
             is_read = length > all.radius;
             let seen = if is_read {
@@ -157,6 +190,10 @@ pub(crate) fn light_along(
                 return seen(light, distance);
             }
             length = 0.0;
+            if tells {
+                is_told = true;
+                path.class = PathClass::EYE.after(Event::Diffuse);
+            }
         }
         ray = next;
     }

@@ -70,9 +70,8 @@ pub(super) fn look_up_irradiance(
                 }
                 lookups += 1;
                 let answer = transport::reflect_irradiance(&scene.0, &cache.0, path, ray.time, &vertex);
-                let mut trace = |rays| {
-                    transport::gather_indirect(&scene.0, &traced, None, path, ray.time, &vertex, rays, scratch)
-                };
+                let mut trace =
+                    |rays| transport::gather_indirect(&scene.0, &traced, None, path, ray.time, &vertex, rays, scratch);
                 let light = match answer {
                     CacheAnswer::Light(light) => light,
                     CacheAnswer::Missing => {

@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use pipeline_core::{Counter, Counters, record_items};
 use pipeline_data::{BuiltIrradianceCache, BuiltPhotonMaps, RenderSettings, TransportScene};
 use rayon::prelude::*;
-use transport::{HemisphereSample, IrradianceRecord, PhotonMaps, PhotonMapsScratch, Site, summarize};
+use transport::{HemisphereSample, IrradianceRecord, PhotonMaps, PhotonMapsScratch, RecordRays, Site, summarize};
 
 /// The counter of this system, asked for once.
 pub(super) struct RayCounter(Counter);
@@ -31,17 +31,21 @@ pub(super) fn sample_records(
     }
     // Without any photon there is nothing to read, and nothing is reflected.
     let empty = PhotonMaps::default();
-    let maps = plan
-        .reads_photons
-        .then(|| built.as_ref().map_or(&empty, |built| &built.0));
+    let rays = RecordRays {
+        seed: settings.seed,
+        methods: plan.methods,
+        maps: plan
+            .reads_photons
+            .then(|| built.as_ref().map_or(&empty, |built| &built.0)),
+        cache: &cache.0,
+    };
     let first = u64::from(fill.next_number) | u64::from(fill.generation) << 32;
     let record = |(i, site): (usize, &Site)| -> Option<IrradianceRecord> {
-        let number = (settings.seed, first + i as u64);
         let samples: Vec<HemisphereSample> = (0..plan.hemisphere.rings())
             .into_par_iter()
             .map_init(PhotonMapsScratch::default, |scratch, ring| {
-                let hemisphere = &plan.hemisphere;
-                hemisphere.sample_ring(&scene.0, &plan.methods, maps, site, number, ring, scratch)
+                plan.hemisphere
+                    .sample_ring(&scene.0, &rays, site, first + i as u64, ring, scratch)
             })
             .flatten_iter()
             .collect();
@@ -49,8 +53,8 @@ pub(super) fn sample_records(
         cache.0.accepts(&record).ok().map(|()| record)
     };
     let sampled: Vec<Option<IrradianceRecord>> = chosen.par_iter().enumerate().map(record).collect();
-    let rays = chosen.len() * plan.hemisphere.rays() as usize;
-    record_items(rays);
-    counter.0.add(rays as u64);
+    let count = chosen.len() * plan.hemisphere.rays() as usize;
+    record_items(count);
+    counter.0.add(count as u64);
     fill.sampled = sampled.into_iter().flatten().collect();
 }

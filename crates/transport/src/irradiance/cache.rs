@@ -1,5 +1,6 @@
 use super::IrradianceRecord;
 use super::clamp::Neighbours;
+use super::coarse::Coarse;
 use spatial::{Bounds, RecordOctree, RecordOctreeError};
 
 /// How records are kept and read.
@@ -22,6 +23,8 @@ pub struct IrradianceCache {
     pub(super) records: Vec<IrradianceRecord>,
     /// Over the spheres within which records hold.
     pub(super) octree: RecordOctree,
+    /// For rays of other records.
+    pub(super) coarse: Coarse,
     neighbours: Neighbours,
 }
 
@@ -35,6 +38,7 @@ impl IrradianceCache {
             settings,
             records: Vec::new(),
             octree: RecordOctree::new(bounds, settings.cell_records),
+            coarse: Coarse::new(settings.min_weight, bounds, settings.cell_records),
             neighbours: Neighbours::new(bounds),
         }
     }
@@ -70,6 +74,7 @@ impl IrradianceCache {
             let reach = self.reach(&self.records[row]);
             self.octree.insert(self.records[row].position, reach)?;
         }
+        self.coarse.insert(&self.records, first)?;
         result
     }
 
@@ -93,6 +98,7 @@ impl IrradianceCache {
     pub fn memory_bytes(&self) -> usize {
         self.records.capacity() * size_of::<IrradianceRecord>()
             + self.octree.memory_bytes()
+            + self.coarse.memory_bytes()
             + self.neighbours.memory_bytes()
     }
 

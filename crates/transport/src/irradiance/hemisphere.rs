@@ -1,4 +1,5 @@
-use crate::gather::{GatherMethods, light_along};
+use super::IrradianceCache;
+use crate::gather::{GatherMethods, RayEnd, light_along};
 use crate::medium::PathMedium;
 use crate::path::Path;
 use crate::path_class::{Event, PathClass};
@@ -55,6 +56,20 @@ pub struct HemisphereSample {
     pub inverse_distance: f32,
 }
 
+/// How the rays of records are followed.
+#[derive(Clone, Copy)]
+pub struct RecordRays<'a> {
+    /// Of the render.
+    pub seed: u64,
+    /// What they count.
+    pub methods: GatherMethods,
+    /// Photon maps that tell what is reflected where rays end, as they do for [`gather_indirect`](crate::gather_indirect).
+    pub maps: Option<&'a PhotonMaps>,
+    /// Without photon maps, rays go on as paths with light sampling; where records of this cache hold, they tell what is reflected
+    /// of indirect light.
+    pub cache: &'a IrradianceCache,
+}
+
 /// A stratified hemisphere: T rings of P cells, each with the same share of the cosine.
 ///
 /// `θ_t = asin √((t − ξ)/T)`, `φ_p = 2π (p − ψ)/P`, hence `E ≈ π/(T P) Σ L(θ_t, φ_p)`, with P ≈ π T so that cells are about
@@ -109,27 +124,27 @@ impl Hemisphere {
 
     /// Sends out the rays of one ring of a record and returns what each of them saw.
     ///
-    /// Rays go on as paths, or read photon maps, as gather rays do: see [`gather_indirect`](crate::gather_indirect).
-    ///
-    /// - `number`: of the record, which decides its random numbers with `seed`.
+    /// - `number`: of the record, which decides its random numbers.
     ///
     /// Cost: P paths. Deterministic whatever else is computed beside it.
     #[must_use]
-    #[expect(clippy::too_many_arguments, reason = "the scene, which rays, and how to follow them")]
     pub fn sample_ring(
         &self,
         scene: &Scene,
-        methods: &GatherMethods,
-        maps: Option<&PhotonMaps>,
+        rays: &RecordRays<'_>,
         site: &Site,
-        (seed, number): (u64, u64),
+        number: u64,
         ring: u32,
         scratch: &mut PhotonMapsScratch,
     ) -> Vec<HemisphereSample> {
+        let end = match rays.maps {
+            Some(maps) => RayEnd::Photons(maps),
+            None => RayEnd::Records(rays.cache),
+        };
         let frame = Frame::from_normal(site.normal);
         let sample = |cell: u32| {
             let ray = ring * self.cells + cell;
-            let stream = SampleStream::new(seed, RECORD_STAGE, number, ray);
+            let stream = SampleStream::new(rays.seed, RECORD_STAGE, number, ray);
             let local = self.direction(ring, cell, stream.draw_2d(0, 0));
             let wi = frame.world_from_local(local).normalize();
             let cos_geometric = site.geometric.dot(wi);
@@ -147,7 +162,7 @@ impl Hemisphere {
                 time: stream.draw_1d(0, 1),
                 ..Ray::new(spawn_origin(site.position, site.error, site.geometric, wi), wi)
             };
-            let seen = light_along(scene, methods, maps, path, ray, scratch);
+            let seen = light_along(scene, &rays.methods, end, path, ray, scratch);
             let softened = soften_terminator(cos_geometric, local.z, site.normal.dot(site.geometric));
             HemisphereSample {
                 radiance: seen.radiance * softened,

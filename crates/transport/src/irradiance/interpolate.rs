@@ -21,8 +21,7 @@ impl IrradianceCache {
     pub fn covers(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> bool {
         let candidates = self.octree.candidates(position);
         candidates.map(|row| &self.records[row as usize]).any(|record| {
-            self.error(record, position, normal)
-                .is_some_and(|error| error < COVERED_SHARE)
+            error_at(record, position, normal, self.settings.min_weight).is_some_and(|error| error < COVERED_SHARE)
                 && (!record.is_widened() || sees(record))
         })
     }
@@ -41,10 +40,35 @@ impl IrradianceCache {
     #[inline]
     #[must_use]
     pub fn interpolate(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> Option<Rgb> {
+        let records = self.octree.candidates(position).map(|row| &self.records[row as usize]);
+        self.mean(records, position, normal, self.settings.min_weight, sees)
+    }
+
+    /// As [`IrradianceCache::interpolate`], between the few records of a subset that hold further than others.
+    #[must_use]
+    pub(super) fn interpolate_coarsely(
+        &self,
+        position: Vec3,
+        normal: Vec3,
+        sees: impl Fn(&IrradianceRecord) -> bool,
+    ) -> Option<Rgb> {
+        let records = self.coarse.candidates(position, &self.records);
+        self.mean(records, position, normal, self.coarse.min_weight, sees)
+    }
+
+    /// The weighted mean of records at a place.
+    #[inline]
+    fn mean<'a>(
+        &self,
+        records: impl Iterator<Item = &'a IrradianceRecord>,
+        position: Vec3,
+        normal: Vec3,
+        min_weight: f32,
+        sees: impl Fn(&IrradianceRecord) -> bool,
+    ) -> Option<Rgb> {
         let (mut sum, mut weights) = (Rgb::BLACK, 0.0);
-        for row in self.octree.candidates(position) {
-            let record = &self.records[row as usize];
-            let Some(error) = self.error(record, position, normal) else {
+        for record in records {
+            let Some(error) = error_at(record, position, normal, min_weight) else {
                 continue;
             };
             if record.is_widened() && !sees(record) {
@@ -61,23 +85,25 @@ impl IrradianceCache {
         }
         (weights > 0.0).then(|| (sum * (1.0 / weights)).map(|channel| channel.max(0.0)))
     }
+}
 
-    /// ε/a of a record at a place, in [0, 1); `None` where the record does not hold.
-    #[inline]
-    fn error(&self, record: &IrradianceRecord, position: Vec3, normal: Vec3) -> Option<f32> {
-        let min_weight = self.settings.min_weight.max(1.0);
-        let step = position - record.position;
-        let (range, distance_sq) = (record.effective_range(), step.length_squared());
-        let reach = range / min_weight;
-        if distance_sq >= reach * reach {
-            return None;
-        }
-        let turned = (1.0 - normal.dot(record.normal)).max(0.0).sqrt();
-        let error = (distance_sq.sqrt() / range + turned) * min_weight;
-        let height = 0.5 * step.dot(normal + record.normal);
-        let tolerance = FRONT_TOLERANCE * reach + 4.0 * f32::EPSILON * position.abs().max_element();
-        (error < 1.0 && height.abs() <= tolerance).then_some(error)
+/// ε/a of a record at a place, in [0, 1); `None` where the record does not hold.
+///
+/// - `min_weight`: 1/a.
+#[inline]
+pub(super) fn error_at(record: &IrradianceRecord, position: Vec3, normal: Vec3, min_weight: f32) -> Option<f32> {
+    let min_weight = min_weight.max(1.0);
+    let step = position - record.position;
+    let (range, distance_sq) = (record.effective_range(), step.length_squared());
+    let reach = range / min_weight;
+    if distance_sq >= reach * reach {
+        return None;
     }
+    let turned = (1.0 - normal.dot(record.normal)).max(0.0).sqrt();
+    let error = (distance_sq.sqrt() / range + turned) * min_weight;
+    let height = 0.5 * step.dot(normal + record.normal);
+    let tolerance = FRONT_TOLERANCE * reach + 4.0 * f32::EPSILON * position.abs().max_element();
+    (error < 1.0 && height.abs() <= tolerance).then_some(error)
 }
 
 impl IrradianceRecord {

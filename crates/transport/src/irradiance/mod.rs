@@ -16,6 +16,7 @@
 
 mod cache;
 mod clamp;
+mod coarse;
 mod gradient;
 mod hemisphere;
 mod interpolate;
@@ -29,7 +30,8 @@ use radiometry::Rgb;
 use std::array;
 
 pub use cache::{CacheSettings, IrradianceCache};
-pub use hemisphere::{Hemisphere, HemisphereSample, Site};
+pub use hemisphere::{Hemisphere, HemisphereSample, RecordRays, Site};
+pub(crate) use reflect::reflect_coarsely;
 pub use reflect::{CacheAnswer, find_sites, reflect_irradiance};
 pub use summary::{Spacing, summarize};
 

@@ -53,12 +53,39 @@ pub fn reflect_irradiance(
     time: f32,
     vertex: &Vertex<'_>,
 ) -> CacheAnswer {
+    let interpolate =
+        |position, normal, sees: &dyn Fn(&IrradianceRecord) -> bool| cache.interpolate(position, normal, sees);
+    reflect_by(scene, path, time, vertex, interpolate)
+}
+
+/// As [`reflect_irradiance`], from fewer records that hold further: good enough one reflection away.
+pub(crate) fn reflect_coarsely(
+    scene: &Scene,
+    cache: &IrradianceCache,
+    path: &Path,
+    time: f32,
+    vertex: &Vertex<'_>,
+) -> CacheAnswer {
+    reflect_by(scene, path, time, vertex, |position, normal, sees| {
+        cache.interpolate_coarsely(position, normal, sees)
+    })
+}
+
+/// Reflects the irradiance that is found at a vertex.
+#[inline]
+fn reflect_by(
+    scene: &Scene,
+    path: &Path,
+    time: f32,
+    vertex: &Vertex<'_>,
+    interpolate: impl FnOnce(Vec3, Vec3, &dyn Fn(&IrradianceRecord) -> bool) -> Option<Rgb>,
+) -> CacheAnswer {
     if !is_suited(scene, vertex, &path.medium) {
         return CacheAnswer::Unsuited;
     }
     let (position, normal) = (vertex.point.p, vertex.facing_shading_normal());
     let sees = |record: &IrradianceRecord| sees(scene, position, normal, record, time);
-    let Some(irradiance) = cache.interpolate(position, normal, sees) else {
+    let Some(irradiance) = interpolate(position, normal, &sees) else {
         return CacheAnswer::Missing;
     };
     let u = path.stream.split(REFLECT_STAGE, 1, 0).draw_2d(path.depth, 0);

@@ -97,6 +97,21 @@ fn gradients_are_the_differences_of_irradiance() {
     }
 }
 
+#[test]
+fn noise_alone_makes_no_gradient() {
+    let hemisphere = Hemisphere::of_rays(1000);
+    let draw = |ray: u32| SampleStream::new(11, StageKey::new("noise"), 0, ray).draw_1d(0, 0);
+    // One ray of twenty sees twenty times as much.
+    let sample = |ray: u32| HemisphereSample {
+        radiance: Rgb::splat(if draw(ray) < 0.05 { 20.0 } else { 0.0 }),
+        inverse_distance: 1.0,
+    };
+    let samples: Vec<HemisphereSample> = (0..hemisphere.rays()).map(sample).collect();
+    let found = translational(&hemisphere, &samples).mean().length();
+    // E is about π.
+    assert!(found < 1.0, "{found}");
+}
+
 const SETTINGS: CacheSettings = CacheSettings {
     min_weight: 10.0,
     cell_records: 8,
