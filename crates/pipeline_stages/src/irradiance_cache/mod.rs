@@ -51,8 +51,8 @@ pub struct IrradianceCache {
     /// Rays over the hemisphere of each record. Four times as many halve the blotches and take four times as long.
     #[reflect(@Range::closed(16.0, 65_536.0))]
     pub rays: u32,
-    /// Weight below which a record tells nothing of a place: records hold within 1/`min_weight` of their range. Higher makes
-    /// more records and follows light better.
+    /// A record is made where none has more weight than this, which is within 1/`min_weight` of its range. Higher makes more
+    /// records and follows light better.
     #[reflect(@Range::closed(2.0, 1000.0))]
     pub min_weight: f32,
     /// Records of an octree cell before it is cut into eight. Changes the time of a lookup, not the picture.

@@ -2,10 +2,6 @@ use super::{IrradianceCache, IrradianceRecord};
 use glam::Vec3;
 use radiometry::Rgb;
 
-/// Records are made where none is within this share of the error at which it still counts, so that everywhere several count:
-/// their noise is averaged, and places that the filling has not seen find one all the same.
-const COVERED_SHARE: f32 = 0.8;
-
 /// How far a place may lie before or behind the plane of a record, in ranges times a.
 const FRONT_TOLERANCE: f32 = 0.1;
 
@@ -21,7 +17,7 @@ impl IrradianceCache {
     pub fn covers(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> bool {
         let candidates = self.octree.candidates(position);
         candidates.map(|row| &self.records[row as usize]).any(|record| {
-            error_at(record, position, normal, self.settings.min_weight).is_some_and(|error| error < COVERED_SHARE)
+            error_at(record, position, normal, self.settings.min_weight).is_some()
                 && (!record.is_widened() || sees(record))
         })
     }
@@ -29,8 +25,8 @@ impl IrradianceCache {
     /// Interpolates the irradiance at a place between the records that hold there; `None` where none does.
     ///
     /// `E(x) = Σ w_j (E_j + (n_j × n)·∇_r E_j + (x − x_j)·∇_t E_j)/Σ w_j`, over records with
-    /// `ε_j = |x − x_j|/r_j + √(1 − n·n_j) < a` whose plane the place lies in, `w_j = (1 − (ε_j/a)²)²`. Without gradients
-    /// `w_j = 1/ε_j − 1/a`. Both fall to zero where a record ends, so that its end does not show.
+    /// `ε_j = |x − x_j|/r_j + √(1 − n·n_j) < a` whose plane the place lies in, `w_j = (1 − (ε_j/a)²)²`, 1/a =
+    /// [`CacheSettings::read_weight`](super::CacheSettings::read_weight). Without gradients `w_j = 1/ε_j − 1/a`. Both fall to zero where a record ends, so that its end does not show.
     ///
     /// Source: Ward, Rubinstein and Clear 1988; Ward and Heckbert 1992. Differs: a weight that is smooth at the record as
     /// well, so that the noise of no single record shows (a cone: Tabellion and Lamorlette, SIGGRAPH 2004).
@@ -41,7 +37,7 @@ impl IrradianceCache {
     #[must_use]
     pub fn interpolate(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> Option<Rgb> {
         let records = self.octree.candidates(position).map(|row| &self.records[row as usize]);
-        self.mean(records, position, normal, self.settings.min_weight, sees)
+        self.mean(records, position, normal, self.settings.read_weight(), sees)
     }
 
     /// As [`IrradianceCache::interpolate`], between the few records of a subset that hold further than others.

@@ -142,13 +142,21 @@ fn read(cache: &IrradianceCache, position: Vec3, normal: Vec3) -> Option<f32> {
 fn a_record_holds_within_a_of_its_range_and_nowhere_else() {
     for gradients in [true, false] {
         let cache = cache_of(&[record(Vec3::ZERO, 1.0, 3.0)], gradients);
+        // Where no other is made, and how far it is read.
+        let (covered, reach) = (0.1, if gradients { 0.18 } else { 0.1 });
         assert_eq!(read(&cache, Vec3::ZERO, Vec3::Z), Some(3.0));
-        assert!(read(&cache, Vec3::X * 0.099, Vec3::Z).is_some());
-        assert_eq!(read(&cache, Vec3::X * 0.101, Vec3::Z), None);
-        // √(1 − cos) = 0.1 at 8.1°.
-        let turned = |degrees: f32| Vec3::new(degrees.to_radians(), 0.0, 1.0).normalize();
-        assert!(read(&cache, Vec3::ZERO, turned(7.9)).is_some());
-        assert_eq!(read(&cache, Vec3::ZERO, turned(8.3)), None);
+        assert!(read(&cache, Vec3::X * (reach - 0.001), Vec3::Z).is_some());
+        assert_eq!(read(&cache, Vec3::X * (reach + 0.001), Vec3::Z), None);
+        assert!(cache.covers(Vec3::X * (covered - 0.001), Vec3::Z, |_| true));
+        assert!(!cache.covers(Vec3::X * (covered + 0.001), Vec3::Z, |_| true));
+        // √(1 − cos) is sin(θ/2) √2.
+        let turned = |error: f32| {
+            let angle = 2.0 * radiometry::math::asin(error * std::f32::consts::FRAC_1_SQRT_2);
+            let (sin, cos) = radiometry::math::sin_cos(angle);
+            Vec3::new(sin, 0.0, cos)
+        };
+        assert!(read(&cache, Vec3::ZERO, turned(reach - 0.002)).is_some());
+        assert_eq!(read(&cache, Vec3::ZERO, turned(reach + 0.002)), None);
         assert_eq!(read(&cache, Vec3::Z * 0.02, Vec3::Z), None, "above its plane");
         assert_eq!(read(&cache, Vec3::Z * -0.02, Vec3::Z), None, "below its plane");
         assert_eq!(read(&cache, Vec3::ZERO, -Vec3::Z), None, "on the other side");
