@@ -159,14 +159,12 @@ pub(crate) fn light_along(
         distance.get_or_insert(length);
         let vertex = Vertex::new(scene, &hit, -ray.direction, &path.medium);
         let mut is_read = false;
-        let mut tells = false;
         let reflects = vertex.bsdf.has_diffuse() && path.depth < methods.max_depth;
-        if let (RayEnd::Records(cache), true) = (end, reflects && !is_told) {
-            if let CacheAnswer::Light(known) = reflect_coarsely(scene, cache, &path, ray.time, &vertex) {
-                light += known;
-                tells = true;
-            }
-        }
+        let known = match end {
+            RayEnd::Records(cache) if reflects && !is_told => known_to(cache, scene, &path, ray.time, &vertex),
+            _ => None,
+        };
+        light += known.unwrap_or(Rgb::BLACK);
         if let (RayEnd::Photons(maps), true) = (end, reflects) {
             let all = maps.estimate_all(&vertex, scratch);
             is_read = length > all.radius;
@@ -190,11 +188,19 @@ pub(crate) fn light_along(
                 return seen(light, distance);
             }
             length = 0.0;
-            if tells {
+            if known.is_some() {
                 is_told = true;
                 path.class = PathClass::EYE.after(Event::Diffuse);
             }
         }
         ray = next;
+    }
+}
+
+/// Indirect light that records say a vertex reflects, weighted with what the path carries; `None` where they do not tell.
+fn known_to(cache: &IrradianceCache, scene: &Scene, path: &Path, time: f32, vertex: &Vertex<'_>) -> Option<Rgb> {
+    match reflect_coarsely(scene, cache, path, time, vertex) {
+        CacheAnswer::Light(light) => Some(light),
+        CacheAnswer::Missing | CacheAnswer::Unsuited => None,
     }
 }

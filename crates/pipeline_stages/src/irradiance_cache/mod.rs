@@ -14,6 +14,9 @@
 //! same, sampled in parallel, and inserted in a fixed order. After that the cache is only read. A record's random numbers depend
 //! on its number alone, so the image is the same whatever the threads.
 //!
+//! Rays of records go on as paths, but where they end they read those records that there are already, a sparse and wide subset
+//! of them: light of many reflections then has the noise of their mean, not that of a single path.
+//!
 //! What the cache is not asked, and what no record tells of, is traced: glossy D lobes, normal maps, things that move,
 //! and places that only a lens or a moment shows. The cache is filled through a pinhole, at random moments.
 //!
@@ -89,7 +92,7 @@ impl Default for IrradianceCache {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default)]
 pub enum IncomingLight {
-    /// Paths that go on: without bias.
+    /// Paths with light sampling, which read the records that there are already for light of further reflections.
     #[default]
     PathTrace,
     /// The photon maps, as in final gathering.

@@ -25,8 +25,7 @@ pub(super) fn plan_cache(
     scene: Option<Res<TransportScene>>,
     prims: Query<(&PrimIndex, &IrradianceCache)>,
     records: Query<Entity, With<IrradianceRecord>>,
-    mut demand: ResMut<PhotonDemand>,
-    mut clock: ResMut<RenderClock>,
+    (mut demand, mut clock): (ResMut<PhotonDemand>, ResMut<RenderClock>),
     report: Option<SceneReport<'_>>,
 ) {
     commands.remove_resource::<CachePlan>();

@@ -58,10 +58,9 @@ fn runs(count: u32) -> Vec<Run> {
 /// How irradiance changes as the place moves within the surface, in the frame of the normal.
 ///
 /// What is seen at distance r moves by sin- and cosine-weighted angles, so cells grow at the expense of their neighbours:
-/// `∇_t E = Σ_p [ u_p Δφ Σ_t sinθ_t cos²θ_t (L_{t,p} − L_{t−1,p})/min(r_{t,p}, r_{t−1,p})
-/// + v_p Σ_t (sinθ_{t+1} − sinθ_t) (L_{t,p} − L_{t,p−1})/min(r_{t,p}, r_{t,p−1}) ]`,
-/// angles at the borders of cells, `u_p` the unit tangent at the middle of cell p, `v_p` that a quarter turn beyond its
-/// border.
+/// `∇_t E = Σ_p (u_p Δφ Σ_t sinθ_t cos²θ_t (L_{t,p} − L_{t−1,p})/min(r_{t,p}, r_{t−1,p}) + v_p Σ_t (sinθ_{t+1} − sinθ_t)
+/// (L_{t,p} − L_{t,p−1})/min(r_{t,p}, r_{t,p−1}))`, angles at the borders of cells, `u_p` the unit tangent at the middle of
+/// cell p, `v_p` that a quarter turn beyond its border.
 ///
 /// Noise makes gradients longer: of the square of the length, what the spread of samples within cells would make by itself is taken
 /// off, `∇_t E · max(0, 1 − σ²/|∇_t E|²)`.
