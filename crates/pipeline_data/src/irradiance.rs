@@ -2,7 +2,7 @@ use bevy_ecs::component::Component;
 use bevy_ecs::resource::Resource;
 use transport::IrradianceCache;
 
-/// A record of irradiance. Written by `irradiance_cache`; one entity each, by the thousand; 120 bytes.
+/// A record of irradiance. Written by `irradiance_cache`; one entity each, by the thousand; 124 bytes.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct IrradianceRecord {
     /// Its number, in the order in which records were made.

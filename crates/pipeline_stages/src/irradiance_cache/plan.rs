@@ -7,10 +7,15 @@ use pipeline_data::{BuiltIrradianceCache, IrradianceRecord, PhotonDemand, PrimIn
 use scene_format::Diagnostic;
 use transport::{CacheSettings, GatherMethods, Hemisphere, IndirectMethod, MapKind, MapKinds, Spacing};
 
+/// Rays of the records that all others read, in rays of others.
+const FIRST_RAYS: u32 = 4;
+
 /// How the cache is filled and read. Written by `plan_cache`; present where it is.
 #[derive(Resource, Clone, Copy, Debug)]
 pub(super) struct CachePlan {
     pub(super) hemisphere: Hemisphere,
+    /// Of the records that all others read.
+    pub(super) first_hemisphere: Hemisphere,
     pub(super) settings: CacheSettings,
     pub(super) spacing: Spacing,
     /// Of the rays of records.
@@ -76,6 +81,7 @@ pub(super) fn plan_cache(
     }
     let plan = CachePlan {
         hemisphere: Hemisphere::of_rays(chosen.rays),
+        first_hemisphere: Hemisphere::of_rays(chosen.rays.saturating_mul(FIRST_RAYS)),
         settings: CacheSettings {
             min_weight: chosen.min_weight,
             cell_records: chosen.cell_records as usize,

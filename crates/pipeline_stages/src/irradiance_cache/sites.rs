@@ -63,7 +63,7 @@ pub(super) fn choose_sites(
         .into_par_iter()
         .filter(|site| !site.is_covered(&scene.0, &cache.0))
         .collect();
-    let most = (MOST_RAYS / plan.hemisphere.rays()).max(1) as usize;
+    let most = (MOST_RAYS / plan.first_hemisphere.rays()).max(1) as usize;
     let spacing = plan.spacing.min_pixels.max(fill.step as f32);
     let is_chosen = thin(&missing, spacing, most, &scene);
     let mut number = 0;

@@ -65,9 +65,9 @@ pub struct RecordRays<'a> {
     pub methods: GatherMethods,
     /// Photon maps that tell what is reflected where rays end, as they do for [`gather_indirect`](crate::gather_indirect).
     pub maps: Option<&'a PhotonMaps>,
-    /// Without photon maps, rays go on as paths with light sampling; where records of this cache hold, they tell what is reflected
-    /// of indirect light.
-    pub cache: &'a IrradianceCache,
+    /// Without photon maps, rays go on as paths with light sampling; where records of this cache hold, if there is one, they tell
+    /// what is reflected of indirect light.
+    pub cache: Option<&'a IrradianceCache>,
 }
 
 /// A stratified hemisphere: T rings of P cells, each with the same share of the cosine.
@@ -137,9 +137,10 @@ impl Hemisphere {
         ring: u32,
         scratch: &mut PhotonMapsScratch,
     ) -> Vec<HemisphereSample> {
-        let end = match rays.maps {
-            Some(maps) => RayEnd::Photons(maps),
-            None => RayEnd::Records(rays.cache),
+        let end = match (rays.maps, rays.cache) {
+            (Some(maps), _) => RayEnd::Photons(maps),
+            (None, Some(cache)) => RayEnd::Records(cache),
+            (None, None) => RayEnd::Path,
         };
         let frame = Frame::from_normal(site.normal);
         let sample = |cell: u32| {

@@ -5,6 +5,9 @@ use radiometry::Rgb;
 /// How far a place may lie before or behind the plane of a record, in ranges times a.
 const FRONT_TOLERANCE: f32 = 0.1;
 
+/// Rays may have missed what is nearest; up to this share of the nearest that they met there is nothing.
+const CLEAR_SHARE: f32 = 0.5;
+
 /// ε a of the error at the record itself, so that the weight of the plain form is finite there.
 const LEAST_ERROR: f32 = 0.01;
 
@@ -12,13 +15,13 @@ impl IrradianceCache {
     /// True when a record tells enough of a place that no other is needed.
     ///
     /// - `normal`: unit, on the side that light comes from.
-    /// - `sees`: whether nothing stands between the place and a record; asked only of records in narrow corners.
+    /// - `sees`: whether nothing stands between the place and a record; asked only of records with something near them.
     #[must_use]
     pub fn covers(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> bool {
         let candidates = self.octree.candidates(position);
         candidates.map(|row| &self.records[row as usize]).any(|record| {
             error_at(record, position, normal, self.settings.min_weight).is_some()
-                && (!record.is_widened() || sees(record))
+                && (record.is_clear(position) || sees(record))
         })
     }
 
@@ -67,7 +70,7 @@ impl IrradianceCache {
             let Some(error) = error_at(record, position, normal, min_weight) else {
                 continue;
             };
-            if record.is_widened() && !sees(record) {
+            if !record.is_clear(position) && !sees(record) {
                 continue;
             }
             let (value, weight) = if self.settings.gradients {
@@ -103,7 +106,14 @@ pub(super) fn error_at(record: &IrradianceRecord, position: Vec3, normal: Vec3, 
 }
 
 impl IrradianceRecord {
-    /// True where the range counts as more than was found, so that the record may reach through a wall.
+    /// True where nothing can stand between the record and a place, by what its rays have met.
+    #[inline]
+    fn is_clear(&self, position: Vec3) -> bool {
+        let clear = CLEAR_SHARE * self.nearest;
+        self.position.distance_squared(position) < clear * clear
+    }
+
+    /// True where the range counts as more than was found.
     #[inline]
     fn is_widened(&self) -> bool {
         self.range < self.least_range

@@ -69,7 +69,7 @@ impl RgbGradient {
     }
 }
 
-/// Irradiance of indirect light at a place of a surface, and how far it holds. 116 bytes.
+/// Irradiance of indirect light at a place of a surface, and how far it holds. 120 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct IrradianceRecord {
@@ -87,6 +87,9 @@ pub struct IrradianceRecord {
     pub range: f32,
     /// The range counts as no less than this, so that corners do not fill up with records, metres.
     pub least_range: f32,
+    /// Distance of the nearest thing that a ray has met, metres; infinite where none has. What is much nearer to the record has
+    /// nothing in between.
+    pub nearest: f32,
 }
 
 impl IrradianceRecord {

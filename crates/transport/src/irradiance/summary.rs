@@ -24,7 +24,7 @@ pub struct Spacing {
 ///
 /// - `samples`: ring by ring.
 /// - `gradients`: whether to compute them; else they are zero.
-/// - returns `None` where a ray saw what is no number.
+/// - returns `None` where a ray saw what is no number, or the samples are not those of the hemisphere.
 #[must_use]
 pub fn summarize(
     hemisphere: &Hemisphere,
@@ -36,7 +36,7 @@ pub fn summarize(
     let light: Rgb = samples.iter().map(|sample| sample.radiance).sum();
     let irradiance = light * hemisphere.weight();
     let near: f32 = samples.iter().map(|sample| sample.inverse_distance).sum();
-    if !irradiance.is_finite() || near.is_nan() {
+    if !irradiance.is_finite() || near.is_nan() || samples.len() != hemisphere.rays() as usize {
         return None;
     }
     let mut range = (samples.len() as f32 / near.max(f32::MIN_POSITIVE)).min(spacing.most);
@@ -52,6 +52,7 @@ pub fn summarize(
     }
     let least_range = (spacing.min_pixels * site.pixel * spacing.min_weight).min(spacing.most);
     let most_range = (spacing.max_pixels * site.pixel * spacing.min_weight).max(least_range);
+    let nearest = samples.iter().map(|sample| sample.inverse_distance).fold(0.0, f32::max);
     let is_finite = [rotation, translation]
         .iter()
         .all(|g| g.0.iter().all(|v| v.is_finite()));
@@ -63,5 +64,6 @@ pub fn summarize(
         translation,
         range: range.min(most_range).max(f32::MIN_POSITIVE),
         least_range,
+        nearest: 1.0 / nearest,
     })
 }

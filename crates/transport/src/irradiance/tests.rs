@@ -124,6 +124,7 @@ fn record(position: Vec3, range: f32, irradiance: f32) -> IrradianceRecord {
         normal: Vec3::Z,
         irradiance: Rgb::splat(irradiance),
         range,
+        nearest: f32::INFINITY,
         ..IrradianceRecord::default()
     }
 }
@@ -198,11 +199,11 @@ fn records_are_extrapolated_by_their_gradients_and_never_below_zero() {
 }
 
 #[test]
-fn what_a_wall_hides_is_asked_of_widened_records_alone() {
+fn what_a_wall_hides_is_asked_of_records_with_something_near() {
     let mut corner = record(Vec3::ZERO, 0.01, 1.0);
     let blind = |cache: &IrradianceCache| cache.interpolate(Vec3::X * 0.0005, Vec3::Z, |_| false);
     assert!(blind(&cache_of(&[corner], true)).is_some());
-    corner.least_range = 0.02;
+    corner.nearest = 0.0004;
     assert!(blind(&cache_of(&[corner], true)).is_none());
 }
 
