@@ -119,7 +119,7 @@ fn refusal(component: &str) -> String {
 
 #[test]
 fn a_method_that_does_not_exist_names_those_that_do() {
-    let indirect = refusal("LightTransport: (indirect: IrradianceCache)");
+    let indirect = refusal("LightTransport: (indirect: Radiosity)");
     assert!(
         indirect.contains(
             "`LightTransport.indirect` must be one of PathTrace, PhotonMap, FinalGather, IrradianceCache, Off"
