@@ -166,6 +166,32 @@ fn traced_ring_has_the_mean_of_the_reference() {
     }
 }
 
+/// What every other block, and every twentieth, may be off by where indirect light is interpolated.
+const CACHED_BLOCKS: [f64; 2] = [0.015, 0.04];
+
+#[test]
+#[ignore = "takes minutes; .ci/full runs it"]
+fn irradiance_cache_meets_the_reference_on_cornell() {
+    let method = "/Render.LightTransport.indirect=IrradianceCache";
+    let image = beauty(&render("cornell", "cached", &["--samples", "64", "--set", method]));
+    let reference = reference("cornell");
+    let found = compare(&image, &reference, 0).expect("same size");
+    let off = Quantiles::of(&block_means(&image, 8), &block_means(&reference, 8));
+    let found_text = format!(
+        "means off by {:?}, relMSE {:.3e}, {off}",
+        found.relative_difference, found.rel_mse
+    );
+    println!("cornell, cached: {found_text}");
+    let means = found.relative_difference.iter().all(|d| d.abs() < MEANS);
+    assert_alike(
+        "cornell-cached",
+        means && off.within(CACHED_BLOCKS),
+        &image,
+        &reference,
+        &found_text,
+    );
+}
+
 /// How far blocks are off, relative to their own means in the reference, the largest of the channels.
 struct Quantiles {
     count: usize,

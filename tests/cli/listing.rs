@@ -54,7 +54,15 @@ fn stages_lists_the_systems_of_each_schedule() {
     let schedules: Vec<&str> = ran.stdout.lines().filter(|line| !line.starts_with(' ')).collect();
     assert_eq!(
         schedules,
-        ["Load", "Prepare", "PhotonPass", "RenderPass", "Bounce", "Finish"]
+        [
+            "Load",
+            "Prepare",
+            "PhotonPass",
+            "CachePass",
+            "RenderPass",
+            "Bounce",
+            "Finish"
+        ]
     );
     let mut systems = Vec::new();
     for line in ran.stdout.lines() {

@@ -1,6 +1,6 @@
 use crate::schedules::{
-    Bounce, BounceSystems, Finish, FinishSystems, Load, LoadSystems, PerturbSystems, PhotonPass, PhotonSystems,
-    Prepare, PrepareSystems, RenderPass, RenderSystems,
+    Bounce, BounceSystems, CachePass, CacheSystems, Finish, FinishSystems, Load, LoadSystems, PerturbSystems,
+    PhotonPass, PhotonSystems, Prepare, PrepareSystems, RenderPass, RenderSystems,
 };
 use bevy_app::App;
 use bevy_ecs::schedule::{InternedSystemSet, ScheduleLabel, Schedules, SystemSet};
@@ -59,6 +59,18 @@ pub fn describe_schedules(app: &mut App) -> Result<Vec<ScheduleDescription>, Str
                 PhotonSystems::RevisePhotons,
                 PhotonSystems::BuildPhotonMaps,
                 PhotonSystems::DeriveFromMaps,
+            ]),
+        )?,
+        describe(
+            app,
+            CachePass,
+            &sets(&[
+                CacheSystems::GenerateRays,
+                CacheSystems::Intersect,
+                CacheSystems::LookUp,
+                CacheSystems::Sample,
+                CacheSystems::Insert,
+                CacheSystems::Maintain,
             ]),
         )?,
         describe(

@@ -1,4 +1,4 @@
-use crate::{Bounce, Cancellation, Finish, Load, PhotonPass, Prepare, Progress, RenderPass, Report};
+use crate::{Bounce, CachePass, Cancellation, Finish, Load, PhotonPass, Prepare, Progress, RenderPass, Report};
 use bevy_app::App;
 use bevy_ecs::resource::Resource;
 use bevy_ecs::schedule::ScheduleLabel;
@@ -10,6 +10,8 @@ use std::time::{Duration, Instant};
 pub struct RenderClock {
     /// Number of stages that still want [`PhotonPass`] to run.
     pub photons_pending: u32,
+    /// Number of stages that still want [`CachePass`] to run.
+    pub records_pending: u32,
     /// Paths of the current wave that live; [`Bounce`] runs while there are any.
     pub live_paths: u64,
     /// Bounce that [`Bounce`] runs for, from 0.
@@ -47,7 +49,7 @@ pub enum Outcome {
 
 /// Runs the schedules from [`Load`] to [`Finish`].
 ///
-/// An interruption is noticed between photon batches and between waves, the time limit between passes: it ends on whole
+/// An interruption is noticed between photon batches, between rounds of a cache and between waves, the time limit between passes: it ends on whole
 /// passes, and one pass with samples to take is always rendered.
 pub fn render(app: &mut App) -> Outcome {
     let started = Instant::now();
@@ -77,6 +79,7 @@ pub fn render(app: &mut App) -> Outcome {
             Outcome::Finished
         };
     }
+    run_cache_passes(world, &cancellation);
     let clock = world.resource::<RenderClock>();
     let (total, per_pass, limit) = (clock.waves_total, clock.waves_per_pass.max(1), clock.time_limit);
     let first_stop = clock.waves_done + per_pass;
@@ -97,6 +100,7 @@ pub fn render(app: &mut App) -> Outcome {
             break;
         }
         run_photon_passes(world, &cancellation);
+        run_cache_passes(world, &cancellation);
         if cancellation.is_requested() {
             break;
         }
@@ -118,6 +122,13 @@ pub fn render(app: &mut App) -> Outcome {
 fn run_photon_passes(world: &mut World, cancellation: &Cancellation) {
     while world.resource::<RenderClock>().photons_pending > 0 && !cancellation.is_requested() {
         world.run_schedule(PhotonPass);
+    }
+}
+
+/// Runs [`CachePass`] until no stage wants it any more: after photons that it may read.
+fn run_cache_passes(world: &mut World, cancellation: &Cancellation) {
+    while world.resource::<RenderClock>().records_pending > 0 && !cancellation.is_requested() {
+        world.run_schedule(CachePass);
     }
 }
 

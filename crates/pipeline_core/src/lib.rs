@@ -46,6 +46,6 @@ pub use profile_layer::ProfileLayer;
 pub use progress::{Progress, ProgressReading};
 pub use report::{Counter, Counters, Report};
 pub use schedules::{
-    Bounce, BounceSystems, Finish, FinishSystems, Load, LoadSystems, PerturbSystems, PhotonPass, PhotonSystems,
-    Prepare, PrepareSystems, RenderPass, RenderSystems,
+    Bounce, BounceSystems, CachePass, CacheSystems, Finish, FinishSystems, Load, LoadSystems, PerturbSystems,
+    PhotonPass, PhotonSystems, Prepare, PrepareSystems, RenderPass, RenderSystems,
 };

@@ -1,7 +1,7 @@
 use crate::driver::trace_paths;
 use crate::schedules::{
-    Bounce, BounceSystems, Finish, FinishSystems, Load, LoadSystems, PerturbSystems, PhotonPass, PhotonSystems,
-    Prepare, PrepareSystems, RenderPass, RenderSystems,
+    Bounce, BounceSystems, CachePass, CacheSystems, Finish, FinishSystems, Load, LoadSystems, PerturbSystems,
+    PhotonPass, PhotonSystems, Prepare, PrepareSystems, RenderPass, RenderSystems,
 };
 use crate::{Cancellation, Counters, Progress, RenderClock, Report};
 use bevy_app::{App, Plugin};
@@ -24,6 +24,7 @@ impl Plugin for CorePlugin {
         app.add_schedule(schedule(Load))
             .add_schedule(schedule(Prepare))
             .add_schedule(schedule(PhotonPass))
+            .add_schedule(schedule(CachePass))
             .add_schedule(schedule(RenderPass))
             .add_schedule(schedule(Bounce))
             .add_schedule(schedule(Finish));
@@ -51,6 +52,18 @@ impl Plugin for CorePlugin {
                 PhotonSystems::RevisePhotons,
                 PhotonSystems::BuildPhotonMaps,
                 PhotonSystems::DeriveFromMaps,
+            )
+                .chain(),
+        )
+        .configure_sets(
+            CachePass,
+            (
+                CacheSystems::GenerateRays,
+                CacheSystems::Intersect,
+                CacheSystems::LookUp,
+                CacheSystems::Sample,
+                CacheSystems::Insert,
+                CacheSystems::Maintain,
             )
                 .chain(),
         )

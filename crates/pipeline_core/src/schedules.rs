@@ -13,6 +13,11 @@ pub struct Prepare;
 #[derive(ScheduleLabel, Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PhotonPass;
 
+/// Runs after the photons of a pass until no stage wants more records (see
+/// [`RenderClock::records_pending`](crate::RenderClock)): coarse to fine over the image, a bounded piece of work each time.
+#[derive(ScheduleLabel, Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct CachePass;
+
 /// Runs once for every wave of camera paths.
 #[derive(ScheduleLabel, Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct RenderPass;
@@ -66,6 +71,23 @@ pub enum PhotonSystems {
     BuildPhotonMaps,
     /// After it, whatever stages compute from photon maps beforehand stands.
     DeriveFromMaps,
+}
+
+/// The order inside [`CachePass`].
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub enum CacheSystems {
+    /// After it, camera rays lead to where the cache may be asked.
+    GenerateRays,
+    /// After it, the places are known where they ask.
+    Intersect,
+    /// After it, those places are chosen that nothing in the cache tells of.
+    LookUp,
+    /// After it, what is to be kept of these places is computed.
+    Sample,
+    /// After it, it is entities.
+    Insert,
+    /// After it, the cache can be asked for it.
+    Maintain,
 }
 
 /// The order inside [`RenderPass`].

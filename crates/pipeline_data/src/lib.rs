@@ -6,6 +6,7 @@
 //!
 //! It deliberately holds no formula: those are one layer down, in crates that know no ECS.
 
+mod irradiance;
 mod mesh_store;
 mod patch;
 mod photon;
@@ -18,6 +19,7 @@ mod stream;
 mod texture_store;
 pub mod vocabulary;
 
+pub use irradiance::{BuiltIrradianceCache, IrradianceRecord};
 pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
 pub use patch::{PatchDemand, RadiosityPatch, SolvedPatches};
 pub use photon::{

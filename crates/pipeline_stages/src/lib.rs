@@ -16,6 +16,7 @@
 //! | [`photon_thinning`] | fewer photons where a picture has no use for more, with all their flux |
 //! | [`final_gather`] | indirect light by rays that read the photon maps |
 //! | [`radiosity`] | indirect light that matt surfaces exchange, solved for patches |
+//! | [`irradiance_cache`] | indirect light at few places, as entities, and interpolated between them |
 //! | [`path_guiding`] | directions of paths, drawn to where photons come from |
 //! | [`path_tracing`] | intersection, emission, direct light, scattering |
 //! | [`image`] | film, auxiliary channels, image files and checkpoints |
@@ -37,6 +38,7 @@ pub mod depth_of_field;
 pub mod final_gather;
 pub mod geometry;
 pub mod image;
+pub mod irradiance_cache;
 pub mod load;
 pub mod motion_blur;
 pub mod path_guiding;
@@ -62,6 +64,7 @@ impl Plugin for DefaultStages {
             photon_thinning::PhotonThinningPlugin,
             final_gather::FinalGatherPlugin,
             radiosity::RadiosityPlugin,
+            irradiance_cache::IrradianceCachePlugin,
             path_guiding::PathGuidingPlugin,
             path_tracing::PathTracingPlugin,
             image::ImagePlugin,
@@ -76,6 +79,7 @@ impl Plugin for DefaultStages {
                 path_guiding::PathGuidingSystems,
                 final_gather::FinalGatherSystems,
                 radiosity::RadiositySystems,
+                irradiance_cache::IrradianceCacheSystems,
                 photon_map::PhotonMapSystems,
                 photon_thinning::PhotonThinningSystems,
                 camera::CameraSystems,

@@ -43,6 +43,25 @@ impl Bsdf {
         }
     }
 
+    /// Smallest GGX width of the D lobes; 1 where they are matt alone, and 0 where one of them passes light to the other
+    /// side. Tells how far irradiance is from all that a reflection needs to know.
+    #[inline]
+    #[must_use]
+    pub fn sharpest_diffuse(&self) -> f32 {
+        let width = |surface: crate::Microsurface| match surface.class() {
+            LobeClass::Diffuse => surface.alpha(),
+            LobeClass::Specular => 1.0,
+        };
+        match self {
+            Self::Black | Self::Diffuse(_) => 1.0,
+            Self::Conductor(b) => width(b.surface()),
+            Self::Dielectric(b) if b.surface().class() == LobeClass::Diffuse => 0.0,
+            Self::Dielectric(_) => 1.0,
+            Self::Plastic(b) => width(b.surface()),
+            Self::Principled(b) => b.sharpest_diffuse(),
+        }
+    }
+
     /// True when a lobe counts as S.
     #[inline]
     #[must_use]

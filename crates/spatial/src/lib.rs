@@ -18,6 +18,7 @@
 //! - **Uniform by world area.** A [`SurfaceSampler`] chooses points of an instance with densities that hold for world
 //!   space whatever the transform, and by solid angle where there is a closed form.
 //! - **Photons.** A [`PhotonTree`] finds the nearest ones to a point.
+//! - **Records.** A [`RecordOctree`] finds the spheres that contain a point.
 //!
 //! Everything is deterministic: the same input yields the same bits for any number of threads, which only share
 //! finished structures.
@@ -60,6 +61,7 @@ mod placed;
 mod query;
 mod ray;
 mod ray_scene;
+mod record_octree;
 mod sampling;
 mod shapes;
 mod surface;
@@ -73,4 +75,5 @@ pub use photon_tree::{InvalidPhotonTree, Nearest, NearestScratch, Neighbour, Pho
 pub use placed::straight_between;
 pub use ray::{Ray, RayHit, SurfacePoint, connect, spawn_origin};
 pub use ray_scene::{MOST_DISTANT, RayScene};
+pub use record_octree::{InvalidRecordOctree, RecordOctree, RecordOctreeError};
 pub use sampling::{DirectionSample, SurfacePiece, SurfaceSample, SurfaceSampler};

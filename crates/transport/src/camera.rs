@@ -41,13 +41,19 @@ impl Camera {
         }
     }
 
+    /// Height of a pixel at a distance of one metre from the eye, in metres, in the middle of the film.
+    #[must_use]
+    pub fn pixel_size(&self) -> f32 {
+        2.0 * self.tan_half_fov / self.resolution.y
+    }
+
     /// The place on the film, in pixels from the top left corner, where a point is seen; `None` behind the camera.
     ///
     /// - `time`: in [0, 1] of the shutter.
     #[must_use]
     pub fn film_position(&self, point: Vec3, time: f32) -> Option<Vec2> {
         let local = self.frame.at(time).inverse().transform_point3(point);
-        let scale = 2.0 * self.tan_half_fov / self.resolution.y;
+        let scale = self.pixel_size();
         (local.z < 0.0).then(|| {
             let plane = Vec2::new(local.x, -local.y) / -local.z;
             plane / scale + 0.5 * self.resolution
@@ -56,7 +62,7 @@ impl Camera {
 
     /// Where a place on the film is seen, in camera space, on the plane at distance 1.
     fn on_plane(&self, film: Vec2) -> Vec3 {
-        let scale = 2.0 * self.tan_half_fov / self.resolution.y;
+        let scale = self.pixel_size();
         Vec3::new(
             (film.x - 0.5 * self.resolution.x) * scale,
             (0.5 * self.resolution.y - film.y) * scale,

@@ -1,6 +1,6 @@
-use crate::density::Estimate;
+use crate::irradiance::{CacheAnswer, IrradianceCache, reflect_coarsely};
 use crate::path::{Path, arrive, emitted_light, sample_direct_light_at, scatter_at};
-use crate::path_class::{CausticMethod, DirectMethod, IndirectMethod, Methods};
+use crate::path_class::{CausticMethod, DirectMethod, Event, IndirectMethod, Methods, PathClass};
 use crate::photon::MapKind;
 use crate::photon_maps::{PhotonMaps, PhotonMapsScratch};
 use crate::radiosity::{PatchField, PatchScratch};
@@ -21,6 +21,8 @@ pub enum Incoming<'a> {
     Photons(&'a PhotonMaps),
     /// The patches of radiosity.
     Patches(&'a PatchField),
+    /// Records of irradiance, where some hold: the indirect part of it, and the rest is traced.
+    Records(&'a IrradianceCache),
 }
 
 /// Memory that gather rays reuse; one a thread.
@@ -37,6 +39,8 @@ pub struct GatherMethods {
     shallow: Methods,
     /// After it, where a ray was too short for the photons at its end.
     deep: Methods,
+    /// After a D vertex whose indirect light a cache has told, as seen from there.
+    told: Methods,
 }
 
 impl GatherMethods {
@@ -60,6 +64,12 @@ impl GatherMethods {
         Self {
             shallow,
             deep: Methods { caustic, ..shallow },
+            told: Methods {
+                direct: DirectMethod::SampleLights,
+                caustic: CausticMethod::Trace,
+                indirect: IndirectMethod::IrradianceCache,
+                ..shallow
+            },
         }
     }
 }
@@ -103,27 +113,47 @@ pub fn gather_indirect(
         };
         // What leaves by an S lobe is specular light, traced elsewhere.
         if !path.class.ends_as_specular() {
-            sum += light_along(scene, methods, incoming, path, ray, scratch);
+            sum += light_along(scene, methods, incoming, path, ray, scratch).radiance;
         }
     }
     sum * (1.0 / rays as f32)
 }
 
-/// What one gather ray sees.
-fn light_along(
+/// What one ray sees that left a D vertex.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenLight {
+    /// Radiance in W·m⁻²·sr⁻¹, weighted with what the path carries: of E D S* (D|V)(S|D|V)* L alone.
+    pub(crate) radiance: Rgb,
+    /// To the first surface, S or not, in metres; infinite where there is none.
+    pub(crate) distance: f32,
+}
+
+/// Follows one ray from a D vertex for the indirect light that it sees.
+///
+/// - `path`: as it left the vertex.
+pub(crate) fn light_along(
     scene: &Scene,
     methods: &GatherMethods,
     incoming: Incoming<'_>,
     mut path: Path,
     mut ray: Ray,
     scratch: &mut GatherScratch,
-) -> Rgb {
+) -> SeenLight {
     let mut light = Rgb::BLACK;
+    let mut distance = None;
+    let seen = |radiance, distance: Option<f32>| SeenLight {
+        radiance,
+        distance: distance.unwrap_or(f32::INFINITY),
+    };
     // Since the last D vertex, over any S.
     let mut length = 0.0;
+    // Since a D vertex whose indirect light is known, all there is to find is its direct light and its caustics.
+    let mut is_told = false;
     loop {
         let hit = arrive(scene, &mut path, &ray);
-        let methods = if path.class.is_deep() {
+        let methods = if is_told {
+            &methods.told
+        } else if path.class.is_deep() {
             &methods.deep
         } else {
             &methods.shallow
@@ -131,55 +161,86 @@ fn light_along(
         if let Some((_, emitted)) = emitted_light(scene, methods, &path, &ray, hit.as_ref()) {
             light += emitted;
         }
-        let Some(hit) = hit else { return light };
-        length += ray.origin.distance(hit.p);
-        let vertex = Vertex::new(scene, &hit, -ray.direction, &path.medium);
-        let has_light = vertex.bsdf.has_diffuse() && path.depth < methods.max_depth;
-        let (is_read, seen) = match incoming {
-            Incoming::Photons(maps) if has_light => {
-                let all = maps.estimate_all(scene, &vertex, &mut scratch.photons);
-                if length > all.radius {
-                    (true, all.value)
-                } else {
-                    let caustic = maps.estimate_radiance(scene, MapKind::Caustic, &vertex, &mut scratch.photons);
-                    (false, caustic.value)
-                }
-            }
-            Incoming::Patches(field) if has_light => match seen_on_patch(scene, field, &vertex, &mut scratch.patches) {
-                Some(all) if length > all.radius => (true, all.value),
-                _ => (false, Rgb::BLACK),
-            },
-            _ => (false, Rgb::BLACK),
+        let Some(hit) = hit else {
+            return seen(light, distance);
         };
-        light += path.throughput * seen;
+        length += ray.origin.distance(hit.p);
+        distance.get_or_insert(length);
+        let vertex = Vertex::new(scene, &hit, -ray.direction, &path.medium);
+        let reflects = vertex.bsdf.has_diffuse() && path.depth < methods.max_depth;
+        let known = if reflects && !is_told {
+            let seen = what_is_reflected(scene, incoming, &path, ray.time, &vertex, length, scratch);
+            light += seen.1;
+            seen.0
+        } else {
+            Known::Nothing
+        };
+        let is_read = known == Known::All;
         if !is_read {
             sample_direct_light_at(scene, methods, &path, ray.time, &vertex, |_, direct| light += direct);
         } else if !vertex.bsdf.has_specular() {
-            return light;
+            return seen(light, distance);
         }
         let Some(next) = scatter_at(scene, methods, &mut path, ray.time, &vertex) else {
-            return light;
+            return seen(light, distance);
         };
         if !path.class.ends_as_specular() {
             if is_read {
-                return light;
+                return seen(light, distance);
             }
             length = 0.0;
+            if known == Known::Indirect {
+                is_told = true;
+                path.class = PathClass::EYE.after(Event::Diffuse);
+            }
         }
         ray = next;
     }
 }
 
-/// All that a place reflects by its D lobes, as its patch tells, and the distance from which it is seen well.
-fn seen_on_patch(
+/// How much is known of what a vertex reflects by its D lobes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// No more than what was added already.
+    Nothing,
+    /// What is left is direct light and caustics.
+    Indirect,
+    All,
+}
+
+/// What a vertex reflects by its D lobes, as far as it is known; weighted with what the path carries.
+///
+/// - `length`: of the ray since the last D vertex, metres. Where it is short, what is blurred is not read.
+fn what_is_reflected(
     scene: &Scene,
-    field: &PatchField,
+    incoming: Incoming<'_>,
+    path: &Path,
+    time: f32,
     vertex: &Vertex<'_>,
-    scratch: &mut PatchScratch,
-) -> Option<Estimate> {
-    let irradiance = field.irradiance(scene, vertex, scratch)?;
-    Some(Estimate {
-        value: vertex.diffuse_response() * (irradiance.direct + irradiance.indirect),
-        radius: field.spacing(),
-    })
+    length: f32,
+    scratch: &mut GatherScratch,
+) -> (Known, Rgb) {
+    match incoming {
+        Incoming::Paths => (Known::Nothing, Rgb::BLACK),
+        Incoming::Photons(maps) => {
+            let all = maps.estimate_all(scene, vertex, &mut scratch.photons);
+            if length > all.radius {
+                return (Known::All, path.throughput * all.value);
+            }
+            // Its caustics no path looks for.
+            let caustic = maps.estimate_radiance(scene, MapKind::Caustic, vertex, &mut scratch.photons);
+            (Known::Nothing, path.throughput * caustic.value)
+        }
+        Incoming::Patches(field) => match field.irradiance(scene, vertex, &mut scratch.patches) {
+            Some(irradiance) if length > field.spacing() => {
+                let all = vertex.diffuse_response() * (irradiance.direct + irradiance.indirect);
+                (Known::All, path.throughput * all)
+            }
+            _ => (Known::Nothing, Rgb::BLACK),
+        },
+        Incoming::Records(cache) => match reflect_coarsely(scene, cache, path, time, vertex) {
+            CacheAnswer::Light(light) => (Known::Indirect, light),
+            CacheAnswer::Missing | CacheAnswer::Unsuited => (Known::Nothing, Rgb::BLACK),
+        },
+    }
 }

@@ -14,8 +14,9 @@
 //!   photons landed, [`PhotonMaps`] holds one of each [`MapKind`].
 //! - [`PatchField`] and [`FormFactors`] are radiosity: what matt surfaces exchange, solved for patches.
 //! - [`gather_indirect`] asks photon maps or patches what gather rays see.
+//! - [`IrradianceCache`] interpolates indirect light between records of what a [`Hemisphere`] of rays saw.
 //!
-//! It deliberately has no volumes and no caches yet, and it never decides anything by thread or time.
+//! It deliberately has no volumes yet, and it never decides anything by thread or time.
 //!
 //! ```
 //! use transport::{Event, Layer, Methods, PathClass};
@@ -31,6 +32,7 @@ mod emission;
 mod frame;
 mod gather;
 mod guide;
+mod irradiance;
 mod light;
 mod medium;
 mod path;
@@ -55,6 +57,10 @@ pub use emission::{EmissionSampler, EmittedPhoton};
 pub use frame::MovingFrame;
 pub use gather::{GatherMethods, GatherScratch, Incoming, gather_indirect};
 pub use guide::Guide;
+pub use irradiance::{
+    CacheAnswer, CacheSettings, Hemisphere, HemisphereSample, IrradianceCache, IrradianceRecord, RecordRays,
+    RgbGradient, Site, Spacing, find_sites, reflect_irradiance, summarize,
+};
 pub use light::{Environment, EnvironmentMap, LightSample, LightSource, LightTable, SpotCone};
 pub use medium::PathMedium;
 pub use path::{Path, arrive, emitted_light, sample_direct_light, sample_direct_light_at, scatter, scatter_at};

@@ -189,6 +189,8 @@ pub enum IndirectMethod {
     FinalGather,
     /// The solution of radiosity is read at the first D vertex.
     Radiosity,
+    /// Irradiance over the hemisphere of the first D vertex, interpolated between records.
+    IrradianceCache,
     /// The layer is black.
     Off,
 }
@@ -197,7 +199,10 @@ impl IndirectMethod {
     /// True when paths end at their first D vertex, because another estimator knows all light that comes over a second.
     #[must_use]
     pub const fn replaces_paths(self) -> bool {
-        matches!(self, Self::PhotonMap | Self::FinalGather | Self::Radiosity)
+        matches!(
+            self,
+            Self::PhotonMap | Self::FinalGather | Self::Radiosity | Self::IrradianceCache
+        )
     }
 }
 
@@ -300,12 +305,16 @@ impl Methods {
         }
     }
 
-    /// The layer that gather rays add to which start at a D vertex that a path of class `class` reached; `None` where
-    /// none start.
+    /// The layer that light from the hemisphere of a D vertex adds to which a path of class `class` reached, by gather rays
+    /// or from the irradiance cache; `None` where it is not asked for.
     #[must_use]
     pub fn gather_layer(&self, class: PathClass) -> Option<Layer> {
         let layer = class.after(Event::Diffuse).after(Event::Diffuse).layer();
-        (self.indirect == IndirectMethod::FinalGather && class.is_specular_only() && self.shows(layer)).then_some(layer)
+        let gathers = matches!(
+            self.indirect,
+            IndirectMethod::FinalGather | IndirectMethod::IrradianceCache
+        );
+        (gathers && class.is_specular_only() && self.shows(layer)).then_some(layer)
     }
 
     /// The layer that the solution of radiosity adds to when it is read at a D vertex that a path of class `class` reached;
@@ -410,6 +419,7 @@ mod tests {
                     IndirectMethod::PhotonMap,
                     IndirectMethod::FinalGather,
                     IndirectMethod::Radiosity,
+                    IndirectMethod::IrradianceCache,
                 ] {
                     all.push(Methods {
                         direct,

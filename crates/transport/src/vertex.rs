@@ -1,8 +1,8 @@
 use crate::guide::Guide;
 use crate::medium::PathMedium;
 use crate::scene::Scene;
-use glam::Vec3;
-use radiometry::{Frame, Rgb};
+use glam::{Vec2, Vec3};
+use radiometry::{Frame, Rgb, math, warp};
 use scattering::{Bsdf, BsdfSample, LobeValues, Transport};
 use spatial::SurfacePoint;
 
@@ -121,6 +121,51 @@ impl<'a> Vertex<'a> {
         }
     }
 
+    /// The unit shading normal on the side of `wo`; the geometric one where the two disagree about that side.
+    #[inline]
+    #[must_use]
+    pub fn facing_shading_normal(&self) -> Vec3 {
+        if self.wo_local.z < 0.0 {
+            -self.frame.z
+        } else {
+            self.frame.z
+        }
+    }
+
+    /// True where a normal map, or a view that the shading normal does not see, turned the normal away from that of the
+    /// point.
+    #[inline]
+    #[must_use]
+    pub fn has_turned_normal(&self) -> bool {
+        self.frame.z.dot(self.point.ns) < FLAT
+    }
+
+    /// Estimates the share of even light from the side of the eye that the D lobes reflect, `ρ_hd = ∫ f_d cosθ_i dω_i`.
+    ///
+    /// Exact where the surface scatters by one Lambertian lobe; else a mean over [`REFLECTANCE_DIRECTIONS`] stratified
+    /// directions, without bias for uniform `u`.
+    #[inline]
+    #[must_use]
+    pub fn diffuse_reflectance(&self, u: Vec2) -> Rgb {
+        if let Bsdf::Diffuse(diffuse) = &self.bsdf {
+            return diffuse.albedo();
+        }
+        let value = |i: u32| {
+            let shift = (i as f32 + 0.5) * (1.0 / REFLECTANCE_DIRECTIONS as f32);
+            // The second coordinates of Hammersley's points: the bits of the first, mirrored.
+            let mirrored = (i.reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0);
+            let point = Vec2::new(math::fract(u.x + shift), math::fract(u.y + mirrored));
+            let local = warp::sample_cosine_hemisphere(point);
+            let cos = local.z.max(1e-6);
+            self.bsdf
+                .eval(self.wo_local, self.toward_eye(local), Transport::Radiance)
+                .diffuse
+                * (1.0 / cos)
+        };
+        let sum: Rgb = (0..REFLECTANCE_DIRECTIONS).map(value).sum();
+        sum * (std::f32::consts::PI / REFLECTANCE_DIRECTIONS as f32)
+    }
+
     /// The value of a Lambertian reflection, albedo/π, where the surface is one and flat; `None` elsewhere.
     #[inline]
     #[must_use]
@@ -143,7 +188,7 @@ impl<'a> Vertex<'a> {
     /// Returns the sample with its direction in world space; `None` ends the path.
     #[inline]
     #[must_use]
-    pub fn sample(&self, u_lobe: f32, u: glam::Vec2, transport: Transport) -> Option<BsdfSample> {
+    pub fn sample(&self, u_lobe: f32, u: Vec2, transport: Transport) -> Option<BsdfSample> {
         let mut sample = match self.guide {
             Some(guide) if transport == Transport::Radiance => self.sample_guided(guide, u_lobe, u)?,
             _ => self.bsdf.sample(self.wo_local, u_lobe, u, transport)?,
@@ -176,7 +221,7 @@ impl<'a> Vertex<'a> {
 
     /// A local direction from the guide or from the scattering function, weighed by the density of both.
     #[inline]
-    fn sample_guided(&self, guide: &Guide, u_lobe: f32, u: glam::Vec2) -> Option<BsdfSample> {
+    fn sample_guided(&self, guide: &Guide, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let own = || self.bsdf.sample(self.wo_local, u_lobe, u, Transport::Radiance);
         let wi = match guide.sample(u_lobe, u) {
             Some(local) => self.toward_eye(local),
@@ -194,16 +239,26 @@ impl<'a> Vertex<'a> {
         })
     }
 
-    /// 1 on flat surfaces; falls smoothly to 0 where the surface would shadow itself.
     #[inline]
     fn terminator(&self, wi: Vec3, cos_shading: f32) -> f32 {
-        if self.cos_normals >= FLAT {
-            return 1.0;
-        }
-        let g = self.point.ng.dot(wi).abs() / (cos_shading.abs() * self.cos_normals.max(1e-3));
-        if g >= 1.0 { 1.0 } else { g * (1.0 + g - g * g) }
+        soften_terminator(self.point.ng.dot(wi).abs(), cos_shading.abs(), self.cos_normals)
     }
 }
+
+/// 1 on flat surfaces; falls smoothly to 0 where the surface would shadow itself.
+///
+/// - `cos_geometric`, `cos_shading`: of the direction with the two normals, ≥ 0; `cos_normals`: between these.
+#[inline]
+pub(crate) fn soften_terminator(cos_geometric: f32, cos_shading: f32, cos_normals: f32) -> f32 {
+    if cos_normals >= FLAT {
+        return 1.0;
+    }
+    let g = cos_geometric / (cos_shading * cos_normals.max(1e-3));
+    if g >= 1.0 { 1.0 } else { g * (1.0 + g - g * g) }
+}
+
+/// Directions of a reflectance that is not known in closed form.
+const REFLECTANCE_DIRECTIONS: u32 = 8;
 
 /// Normals closer than this cosine (0.08°) count as one.
 const FLAT: f32 = 0.999_999;

@@ -135,6 +135,8 @@ pub enum IndirectMethod {
     FinalGather,
     /// Light exchanged between patches of all matt surfaces, solved once: smooth, and without small shadows.
     Radiosity,
+    /// Irradiance computed well at few places and interpolated between them: smooth, and fast where light changes slowly.
+    IrradianceCache,
     /// Not at all.
     Off,
 }
@@ -146,6 +148,7 @@ impl From<IndirectMethod> for transport::IndirectMethod {
             IndirectMethod::PhotonMap => Self::PhotonMap,
             IndirectMethod::FinalGather => Self::FinalGather,
             IndirectMethod::Radiosity => Self::Radiosity,
+            IndirectMethod::IrradianceCache => Self::IrradianceCache,
             IndirectMethod::Off => Self::Off,
         }
     }

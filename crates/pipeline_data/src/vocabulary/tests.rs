@@ -119,9 +119,11 @@ fn refusal(component: &str) -> String {
 
 #[test]
 fn a_method_that_does_not_exist_names_those_that_do() {
-    let indirect = refusal("LightTransport: (indirect: IrradianceCache)");
+    let indirect = refusal("LightTransport: (indirect: RayTrace)");
     assert!(
-        indirect.contains("`LightTransport.indirect` must be one of PathTrace, PhotonMap, FinalGather, Radiosity, Off"),
+        indirect.contains(
+            "`LightTransport.indirect` must be one of PathTrace, PhotonMap, FinalGather, Radiosity, IrradianceCache, Off"
+        ),
         "{indirect}"
     );
     assert!(indirect.contains("scene.ron:1:"), "{indirect}");

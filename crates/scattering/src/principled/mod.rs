@@ -199,6 +199,13 @@ impl PrincipledBsdf {
         (self.has_matt() && class == LobeClass::Diffuse) || self.surfaces().any(|surface| surface.class() == class)
     }
 
+    /// Smallest GGX width of its D lobes; 0 where one of them passes light.
+    pub(crate) fn sharpest_diffuse(&self) -> f32 {
+        let diffuse = self.surfaces().filter(|surface| surface.class() == LobeClass::Diffuse);
+        let least = diffuse.map(Microsurface::alpha).fold(1.0, f32::min);
+        if self.transmits() && least < 1.0 { 0.0 } else { least }
+    }
+
     pub(crate) fn has_delta(&self) -> bool {
         self.surfaces().any(Microsurface::is_smooth)
     }

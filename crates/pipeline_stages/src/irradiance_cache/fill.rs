@@ -1,0 +1,89 @@
+use bevy_ecs::prelude::*;
+use glam::{UVec2, Vec2};
+use pipeline_core::{Progress, record_items};
+use pipeline_data::{CameraFrame, RenderSettings};
+use radiometry::{SampleStream, StageKey};
+use spatial::Ray;
+use transport::{IrradianceRecord, Path, Site};
+
+/// Key of the random numbers of places on the film.
+const FILM_STAGE: StageKey = StageKey::new("irradiance_cache/film");
+/// Key of those of the paths from there.
+const PATH_STAGE: StageKey = StageKey::new("irradiance_cache/paths");
+
+/// Distances between camera rays, in pixels. Rays are at random places of their pixels, so that the last rounds find what those
+/// before them have missed; they cost little.
+const STEPS: [u32; 10] = [32, 16, 8, 4, 2, 1, 1, 1, 1, 1];
+
+/// Most camera rays at a time, so that memory does not grow with the picture.
+const WAVE_RAYS: u32 = 1 << 16;
+
+/// How far the filling of the cache is. Present while it goes on.
+#[derive(Resource, Debug, Default)]
+pub(super) struct CacheFill {
+    /// Of the render whose photons are read; 0 without.
+    pub(super) generation: u32,
+    /// Index in [`STEPS`].
+    pub(super) level: usize,
+    /// First cell of the next wave.
+    pub(super) next_cell: u32,
+    /// Pixels between the camera rays of this wave.
+    pub(super) step: u32,
+    /// Camera rays that were just made.
+    pub(super) rays: Vec<(Path, Ray)>,
+    /// Places of this wave that no record tells of yet.
+    pub(super) missing: Vec<Site>,
+    /// Those of them that get a record in this round.
+    pub(super) chosen: Vec<Site>,
+    /// Their records.
+    pub(super) sampled: Vec<IrradianceRecord>,
+    /// Number of the next record.
+    pub(super) next_number: u32,
+}
+
+impl CacheFill {
+    /// True when nothing is missing at any level.
+    pub(super) fn is_over(&self) -> bool {
+        self.level >= STEPS.len() && self.missing.is_empty()
+    }
+}
+
+/// Sends out the camera rays of the next wave, once the last one misses nothing any more.
+pub(super) fn generate_rays(
+    mut fill: ResMut<CacheFill>,
+    settings: Res<RenderSettings>,
+    camera: Res<CameraFrame>,
+    progress: Res<Progress>,
+) {
+    let fill = &mut *fill;
+    if fill.level == 0 && fill.next_cell == 0 && fill.generation == 0 && fill.next_number == 0 {
+        progress.start("records", "levels", STEPS.len() as u64);
+    }
+    if !fill.missing.is_empty() || fill.is_over() {
+        return;
+    }
+    let (step, level) = (STEPS[fill.level], fill.level as u32);
+    fill.step = step;
+    let size = settings.crop_max - settings.crop_min;
+    let cells = UVec2::new(size.x.div_ceil(step), size.y.div_ceil(step));
+    let end = (cells.x * cells.y).min(fill.next_cell + WAVE_RAYS);
+    let ray = |cell: u32| {
+        let corner = settings.crop_min + UVec2::new(cell % cells.x, cell / cells.x) * step;
+        let domain = u64::from(corner.y) * u64::from(settings.resolution.x) + u64::from(corner.x);
+        let film = SampleStream::new(settings.seed, FILM_STAGE, domain, level);
+        let place = corner.as_vec2() + film.draw_2d(0, 0) * step as f32;
+        let place = place.min(settings.crop_max.as_vec2() - Vec2::splat(1e-3));
+        let stream = SampleStream::new(settings.seed, PATH_STAGE, domain, level);
+        (Path::from_eye(0, stream), camera.0.ray(place, film.draw_1d(0, 1)))
+    };
+    fill.rays = (fill.next_cell..end).map(ray).collect();
+    record_items(fill.rays.len());
+    fill.next_cell = end;
+    if end == cells.x * cells.y {
+        fill.next_cell = 0;
+        fill.level += 1;
+        if fill.generation == 0 {
+            progress.set_done(fill.level as u64 - 1);
+        }
+    }
+}

@@ -1,0 +1,123 @@
+use super::IrradianceRecord;
+use super::clamp::Neighbours;
+use super::coarse::Coarse;
+use spatial::{Bounds, RecordOctree, RecordOctreeError};
+
+/// How records are kept and read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CacheSettings {
+    /// A record is made where none has more weight than this, ≥ 1.
+    pub min_weight: f32,
+    /// Records of a leaf of the octree before it is cut.
+    pub cell_records: usize,
+    /// Whether records are extrapolated by their gradients and weighed smoothly; else as by Ward, Rubinstein and Clear.
+    pub gradients: bool,
+}
+
+/// Extrapolated records are read so many times further than where no other is made beside them. Their weights fall smoothly, so
+/// what counts is about as near as ever, but there are more of them: their noise is averaged.
+const READ_WIDER: f32 = 1.8;
+
+impl CacheSettings {
+    /// 1/a of reading: records with less weight tell nothing.
+    #[inline]
+    #[must_use]
+    pub fn read_weight(&self) -> f32 {
+        let wider = if self.gradients { READ_WIDER } else { 1.0 };
+        (self.min_weight / wider).max(1.0)
+    }
+}
+
+/// Records of irradiance and the octree over them.
+///
+/// A function of the records and the order in which they came.
+#[derive(Clone, Debug)]
+pub struct IrradianceCache {
+    pub(super) settings: CacheSettings,
+    pub(super) records: Vec<IrradianceRecord>,
+    /// Over the spheres within which records hold.
+    pub(super) octree: RecordOctree,
+    /// For rays of other records.
+    pub(super) coarse: Coarse,
+    neighbours: Neighbours,
+}
+
+impl IrradianceCache {
+    /// A cache without records.
+    ///
+    /// - `bounds`: of the scene.
+    #[must_use]
+    pub fn new(settings: CacheSettings, bounds: &Bounds) -> Self {
+        Self {
+            settings,
+            records: Vec::new(),
+            octree: RecordOctree::new(bounds, settings.cell_records),
+            coarse: Coarse::new(settings.min_weight, bounds, settings.cell_records),
+            neighbours: Neighbours::new(bounds),
+        }
+    }
+
+    /// Whether a record can be kept: its place is in the scene and its numbers are finite.
+    ///
+    /// # Errors
+    /// As [`RecordOctree::insert`].
+    pub fn accepts(&self, record: &IrradianceRecord) -> Result<(), RecordOctreeError> {
+        self.octree.accepts(record.position, self.reach(record))?;
+        self.octree.accepts(record.position, record.range)
+    }
+
+    /// Adds records behind those that there are, and lowers the ranges of these and of their neighbours until none exceeds
+    /// that of another by more than the distance between the two.
+    ///
+    /// Source: Křivánek et al., "Making Radiance and Irradiance Caching Practical", EGSR 2006, section 3.3.
+    ///
+    /// # Errors
+    /// The first that [`IrradianceCache::accepts`] refuses; those before it are kept then.
+    pub fn insert(&mut self, new: &[IrradianceRecord]) -> Result<(), RecordOctreeError> {
+        let first = self.records.len();
+        let mut result = Ok(());
+        for record in new {
+            result = self.accepts(record);
+            if result.is_err() {
+                break;
+            }
+            self.records.push(*record);
+        }
+        self.neighbours.lower_ranges(&mut self.records, first)?;
+        for row in first..self.records.len() {
+            let reach = self.reach(&self.records[row]);
+            self.octree.insert(self.records[row].position, reach)?;
+        }
+        self.coarse.insert(&self.records, first)?;
+        result
+    }
+
+    /// Builds the octree anew with the ranges as they are by now.
+    pub fn rebuild(&mut self, bounds: &Bounds) -> Result<(), RecordOctreeError> {
+        self.octree = RecordOctree::new(bounds, self.settings.cell_records);
+        for record in &self.records {
+            self.octree.insert(record.position, self.reach(record))?;
+        }
+        Ok(())
+    }
+
+    /// All records, by number.
+    #[must_use]
+    pub fn records(&self) -> &[IrradianceRecord] {
+        &self.records
+    }
+
+    /// Memory in bytes, about.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        self.records.capacity() * size_of::<IrradianceRecord>()
+            + self.octree.memory_bytes()
+            + self.coarse.memory_bytes()
+            + self.neighbours.memory_bytes()
+    }
+
+    /// Distance within which a record can have enough weight.
+    fn reach(&self, record: &IrradianceRecord) -> f32 {
+        record.effective_range() / self.settings.read_weight()
+    }
+}

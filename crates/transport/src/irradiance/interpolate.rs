@@ -1,0 +1,135 @@
+use super::{IrradianceCache, IrradianceRecord};
+use glam::Vec3;
+use radiometry::Rgb;
+
+/// How far a place may lie before or behind the plane of a record, in ranges times a.
+const FRONT_TOLERANCE: f32 = 0.1;
+
+/// Rays may have missed what is nearest; up to this share of the nearest that they met there is nothing.
+const CLEAR_SHARE: f32 = 0.5;
+
+/// ε a of the error at the record itself, so that the weight of the plain form is finite there.
+const LEAST_ERROR: f32 = 0.01;
+
+impl IrradianceCache {
+    /// True when a record tells enough of a place that no other is needed.
+    ///
+    /// - `normal`: unit, on the side that light comes from.
+    /// - `sees`: whether nothing stands between the place and a record; asked only of records with something near them.
+    #[must_use]
+    pub fn covers(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> bool {
+        let candidates = self.octree.candidates(position);
+        candidates.map(|row| &self.records[row as usize]).any(|record| {
+            error_at(record, position, normal, self.settings.min_weight).is_some()
+                && (record.is_clear(position) || sees(record))
+        })
+    }
+
+    /// Interpolates the irradiance at a place between the records that hold there; `None` where none does.
+    ///
+    /// `E(x) = Σ w_j (E_j + (n_j × n)·∇_r E_j + (x − x_j)·∇_t E_j)/Σ w_j`, over records with
+    /// `ε_j = |x − x_j|/r_j + √(1 − n·n_j) < a` whose plane the place lies in, `w_j = (1 − (ε_j/a)²)²`, 1/a =
+    /// [`CacheSettings::read_weight`](super::CacheSettings::read_weight). Without gradients `w_j = 1/ε_j − 1/a`. Both fall to zero where a record ends, so that its end does not show.
+    ///
+    /// Source: Ward, Rubinstein and Clear 1988; Ward and Heckbert 1992. Differs: a weight that is smooth at the record as
+    /// well, so that the noise of no single record shows (a cone: Tabellion and Lamorlette, SIGGRAPH 2004).
+    ///
+    /// - `normal`, `sees`: as for [`IrradianceCache::covers`].
+    /// - returns W·m⁻², of indirect light alone, no channel negative.
+    #[inline]
+    #[must_use]
+    pub fn interpolate(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> Option<Rgb> {
+        let records = self.octree.candidates(position).map(|row| &self.records[row as usize]);
+        self.mean(records, position, normal, self.settings.read_weight(), sees)
+    }
+
+    /// As [`IrradianceCache::interpolate`], between the few records of a subset that hold further than others.
+    #[must_use]
+    pub(super) fn interpolate_coarsely(
+        &self,
+        position: Vec3,
+        normal: Vec3,
+        sees: impl Fn(&IrradianceRecord) -> bool,
+    ) -> Option<Rgb> {
+        let records = self.coarse.candidates(position, &self.records);
+        self.mean(records, position, normal, self.coarse.min_weight, sees)
+    }
+
+    /// The weighted mean of records at a place.
+    #[inline]
+    fn mean<'a>(
+        &self,
+        records: impl Iterator<Item = &'a IrradianceRecord>,
+        position: Vec3,
+        normal: Vec3,
+        min_weight: f32,
+        sees: impl Fn(&IrradianceRecord) -> bool,
+    ) -> Option<Rgb> {
+        let (mut sum, mut weights) = (Rgb::BLACK, 0.0);
+        for record in records {
+            let Some(error) = error_at(record, position, normal, min_weight) else {
+                continue;
+            };
+            if !record.is_clear(position) && !sees(record) {
+                continue;
+            }
+            let (value, weight) = if self.settings.gradients {
+                let rest = 1.0 - error * error;
+                (record.extrapolate(position, normal), rest * rest)
+            } else {
+                (record.irradiance, 1.0 / error.max(LEAST_ERROR) - 1.0)
+            };
+            sum += value * weight;
+            weights += weight;
+        }
+        (weights > 0.0).then(|| (sum * (1.0 / weights)).map(|channel| channel.max(0.0)))
+    }
+}
+
+/// ε/a of a record at a place, in [0, 1); `None` where the record does not hold.
+///
+/// - `min_weight`: 1/a.
+#[inline]
+pub(super) fn error_at(record: &IrradianceRecord, position: Vec3, normal: Vec3, min_weight: f32) -> Option<f32> {
+    let min_weight = min_weight.max(1.0);
+    let step = position - record.position;
+    let (range, distance_sq) = (record.effective_range(), step.length_squared());
+    let reach = range / min_weight;
+    if distance_sq >= reach * reach {
+        return None;
+    }
+    let turned = (1.0 - normal.dot(record.normal)).max(0.0).sqrt();
+    let error = (distance_sq.sqrt() / range + turned) * min_weight;
+    let height = 0.5 * step.dot(normal + record.normal);
+    let tolerance = FRONT_TOLERANCE * reach + 4.0 * f32::EPSILON * position.abs().max_element();
+    (error < 1.0 && height.abs() <= tolerance).then_some(error)
+}
+
+impl IrradianceRecord {
+    /// True where nothing can stand between the record and a place, by what its rays have met.
+    #[inline]
+    fn is_clear(&self, position: Vec3) -> bool {
+        let clear = CLEAR_SHARE * self.nearest;
+        self.position.distance_squared(position) < clear * clear
+    }
+
+    /// True where the range counts as more than was found.
+    #[inline]
+    fn is_widened(&self) -> bool {
+        self.range < self.least_range
+    }
+
+    /// E at another place and normal, linear.
+    #[inline]
+    fn extrapolate(&self, position: Vec3, normal: Vec3) -> Rgb {
+        // Where the range is widened, a linear change would end too early.
+        let trust = if self.is_widened() {
+            self.range / self.least_range
+        } else {
+            1.0
+        };
+        let turned = self.rotation.along(self.normal.cross(normal));
+        let moved = self.translation.along((position - self.position) * trust);
+        (self.irradiance + turned + moved).map(|channel| channel.max(0.0))
+    }
+}
