@@ -142,7 +142,7 @@ impl<'a> Vertex<'a> {
 
     /// Estimates the share of even light from the side of the eye that the D lobes reflect, `ρ_hd = ∫ f_d cosθ_i dω_i`.
     ///
-    /// Exact where the surface scatters by one Lambertian lobe; else a mean over [`REFLECTANCE_DIRECTIONS`] stratified
+    /// Exact where the surface scatters by one Lambertian lobe; else a mean over some stratified
     /// directions, without bias for uniform `u`.
     #[inline]
     #[must_use]
