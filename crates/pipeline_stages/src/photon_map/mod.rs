@@ -14,12 +14,15 @@
 //! photons are stored. All of the photons of the batches are kept, so that no photon is favoured. A photon's numbers depend
 //! on its pass and path number alone and photons are stored in (path, bounce) order: the map is the same whatever the threads.
 //!
+//! Once built, each map looks for the walls around its photons, so that no light leaks through them.
+//!
 //! Photons that an earlier run wrote to a file are stored instead of traced where the request names it, to the same bits.
 //!
 //! Progressive maps are made anew for every pass, from a number of paths that a first batch decides, and read with a radius
 //! that shrinks with the number of the pass: passes can be resumed and shared out.
 //!
-//! Limits: bias by blur over the radius, at edges, and where surfaces curve within it. Photons have no time.
+//! Limits: bias by blur over the radius, at edges, and where surfaces curve within it. Photons have no time; walls that move
+//! are looked for where they are at half the time of the shutter.
 //! Source: Jensen, "Global Illumination using Photon Maps", EGWR 1996; Knaus and Zwicker, ACM TOG 30(3), 2011.
 
 mod build;
