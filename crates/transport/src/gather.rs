@@ -77,10 +77,10 @@ impl GatherMethods {
 /// Gathers the indirect light of a vertex: E S* D S* (D|V)(S|D|V)* L, seen from its first D.
 ///
 /// `L_o(x, ω_o) ≈ 1/N Σ f_d(x, ω_i, ω_o) cosθ_i L_r(y_i, −ω_i) / p(ω_i)`, where `y_i` is the first D vertex in direction
-/// `ω_i`, over S vertices or not, and `L_r` all that it reflects by its D lobes, as the photon maps tell.
+/// `ω_i`, over S vertices or not, and `L_r` all that it reflects by its D lobes, as `incoming` tells or paths find.
 ///
 /// Source: Jensen, "Realistic Image Synthesis Using Photon Mapping", 2001, section 9.2.
-/// Differs: directions are drawn from the BSDF; a ray no longer than the radius of the estimate at its end does not use it
+/// Differs: directions are drawn from the BSDF; a ray no longer than what is told at its end is blurred over does not use it
 /// but goes on as a path, with light sampling, so that corners stay clean.
 ///
 /// - `path`: as it arrived at the vertex.
