@@ -2,6 +2,7 @@
 
 use crate::args::AuditArgs;
 use crate::audit::Judged;
+use crate::number::number;
 use film::{Audit, AuditTest};
 use std::fmt::Write;
 use transport::Layer;
@@ -187,17 +188,6 @@ fn chance(test: &AuditTest) -> String {
         Some(p) if p < 1e-99 => "0".into(),
         Some(p) if p < 1e-3 => format!("{p:.0e}"),
         Some(p) => format!("{p:.3}"),
-    }
-}
-
-fn number(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 {
-        "0".into()
-    } else if (1e-3..1e5).contains(&size) {
-        format!("{value:.5}")
-    } else {
-        format!("{value:.3e}")
     }
 }
 

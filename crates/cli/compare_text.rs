@@ -1,5 +1,6 @@
 //! A comparison as text and as JSON.
 
+use crate::number::number;
 use film::Comparison;
 use std::fmt::Write;
 
@@ -57,17 +58,6 @@ pub(crate) fn json(comparison: &Comparison) -> String {
         "worst": worst,
     });
     format!("{value:#}\n")
-}
-
-fn number(value: f64) -> String {
-    let size = value.abs();
-    if value == 0.0 {
-        "0".into()
-    } else if (1e-3..1e5).contains(&size) {
-        format!("{value:.5}")
-    } else {
-        format!("{value:.3e}")
-    }
 }
 
 fn percent(share: f64) -> String {

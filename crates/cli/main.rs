@@ -18,6 +18,7 @@ mod explain;
 mod flatten;
 mod graph;
 mod interrupt;
+mod number;
 mod outputs;
 mod parse;
 mod photon_colour;

@@ -1,5 +1,6 @@
 use bevy_ecs::resource::Resource;
 use glam::UVec2;
+use scene_format::Scene;
 
 /// The settings of this render, checked: what scene and command line together say. Written by `tables`.
 #[derive(Resource, Clone, Debug)]
@@ -32,4 +33,26 @@ pub struct RenderSettings {
     pub render_prim: u32,
     /// Row of the prim whose `Camera` it looks through.
     pub camera_prim: u32,
+}
+
+impl RenderSettings {
+    /// What a file of a render has to agree with to be taken up again: the program, the composed scene at its frame, the seed
+    /// and the film. The number of samples may differ.
+    ///
+    /// - `purpose`: of the file, so that no kind of file passes for another.
+    #[must_use]
+    pub fn key(&self, scene: &Scene, purpose: &str) -> [u8; 32] {
+        let mut key = scene.hash;
+        scene_format::mix_hash(&mut key, purpose, env!("CARGO_PKG_VERSION").as_bytes());
+        scene_format::mix_hash(&mut key, "seed", &self.seed.to_le_bytes());
+        for (label, value) in [
+            ("resolution", self.resolution),
+            ("crop min", self.crop_min),
+            ("crop max", self.crop_max),
+        ] {
+            scene_format::mix_hash(&mut key, label, &value.x.to_le_bytes());
+            scene_format::mix_hash(&mut key, label, &value.y.to_le_bytes());
+        }
+        key
+    }
 }

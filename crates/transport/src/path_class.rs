@@ -309,20 +309,25 @@ impl Methods {
     /// or from the irradiance cache; `None` where it is not asked for.
     #[must_use]
     pub fn gather_layer(&self, class: PathClass) -> Option<Layer> {
-        let layer = class.after(Event::Diffuse).after(Event::Diffuse).layer();
         let gathers = matches!(
             self.indirect,
             IndirectMethod::FinalGather | IndirectMethod::IrradianceCache
         );
-        (gathers && class.is_specular_only() && self.shows(layer)).then_some(layer)
+        self.indirect_layer(class).filter(|_| gathers)
     }
 
     /// The layer that the solution of radiosity adds to when it is read at a D vertex that a path of class `class` reached;
     /// `None` where it is not to be read.
     #[must_use]
     pub fn radiosity_layer(&self, class: PathClass) -> Option<Layer> {
+        let reads = self.indirect == IndirectMethod::Radiosity;
+        self.indirect_layer(class).filter(|_| reads)
+    }
+
+    /// The layer that all indirect light of a D vertex belongs to, where it is the first of the path and the layer is shown.
+    fn indirect_layer(&self, class: PathClass) -> Option<Layer> {
         let layer = class.after(Event::Diffuse).after(Event::Diffuse).layer();
-        (self.indirect == IndirectMethod::Radiosity && class.is_specular_only() && self.shows(layer)).then_some(layer)
+        (class.is_specular_only() && self.shows(layer)).then_some(layer)
     }
 
     /// True when a path of this class can still contribute to anything by meeting light, however it goes on.

@@ -14,20 +14,9 @@ pub(super) fn checkpoint_path(request: &RenderRequest) -> Option<PathBuf> {
     Some(first.with_file_name(name))
 }
 
-/// What a checkpoint has to agree with: the program, the composed scene at its frame, seed, resolution and crop. The number of samples may differ.
+/// What a checkpoint has to agree with.
 pub(super) fn checkpoint_key(scene: &ComposedScene, settings: &RenderSettings) -> [u8; 32] {
-    let mut key = scene.0.hash;
-    scene_format::mix_hash(&mut key, "version", env!("CARGO_PKG_VERSION").as_bytes());
-    scene_format::mix_hash(&mut key, "seed", &settings.seed.to_le_bytes());
-    for (label, value) in [
-        ("resolution", settings.resolution),
-        ("crop min", settings.crop_min),
-        ("crop max", settings.crop_max),
-    ] {
-        scene_format::mix_hash(&mut key, label, &value.x.to_le_bytes());
-        scene_format::mix_hash(&mut key, label, &value.y.to_le_bytes());
-    }
-    key
+    settings.key(&scene.0, "version")
 }
 
 /// Makes an empty film, or takes up the one that an interrupted render left.

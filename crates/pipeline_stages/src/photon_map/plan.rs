@@ -294,22 +294,10 @@ fn size_passes(emission: &mut EmissionPlan, plan: &PhotonPlan, scene: &transport
     }
 }
 
-/// What photons have to agree with to be taken up again: the program, the composed scene at its frame, the seed, and the film,
-/// since photons are aimed at what it sees. The number of samples may differ.
+/// What photons have to agree with to be taken up again; with the film too, since they are aimed at what it sees.
 #[must_use]
 pub fn photon_key(scene: &Scene, settings: &RenderSettings) -> [u8; 32] {
-    let mut key = scene.hash;
-    scene_format::mix_hash(&mut key, "photons", env!("CARGO_PKG_VERSION").as_bytes());
-    scene_format::mix_hash(&mut key, "seed", &settings.seed.to_le_bytes());
-    for (label, value) in [
-        ("resolution", settings.resolution),
-        ("crop min", settings.crop_min),
-        ("crop max", settings.crop_max),
-    ] {
-        scene_format::mix_hash(&mut key, label, &value.x.to_le_bytes());
-        scene_format::mix_hash(&mut key, label, &value.y.to_le_bytes());
-    }
-    key
+    settings.key(scene, "photons")
 }
 
 /// Reads the photons of a file, in place of tracing them. It must hold every map of the plan, none of them progressive.

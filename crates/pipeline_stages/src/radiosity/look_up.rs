@@ -45,12 +45,12 @@ pub(super) fn look_up_radiosity(
     let methods = &settings.methods;
     let gathering = GatherMethods::new(methods, false);
     let mut batches: Vec<_> = batches.iter_mut().collect();
-    let points: usize = batches
+    let (points, missed): (usize, u64) = batches
         .par_iter_mut()
         .map_init(
             <(PatchScratch, GatherScratch)>::default,
             |scratch, (rays, paths, hits, log)| {
-                let mut points = 0;
+                let (mut points, mut missed) = (0, 0);
                 for ((ray, path), hit) in rays.0.iter().zip(&paths.0).zip(&hits.0) {
                     let (Some(hit), Some(layer)) = (hit, methods.radiosity_layer(path.class)) else {
                         continue;
@@ -63,7 +63,7 @@ pub(super) fn look_up_radiosity(
                     let light: Rgb = match solved.0.indirect_irradiance(&scene.0, &vertex, &mut scratch.0) {
                         Some(irradiance) => path.throughput * vertex.diffuse_response() * irradiance,
                         None => {
-                            misses.0.add(1);
+                            missed += 1;
                             transport::gather_indirect(
                                 &scene.0,
                                 &gathering,
@@ -80,9 +80,10 @@ pub(super) fn look_up_radiosity(
                         log.0.add(path.slot, layer, light);
                     }
                 }
-                points
+                (points, missed)
             },
         )
-        .sum();
+        .reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+    misses.0.add(missed);
     record_items(points);
 }
