@@ -2,47 +2,18 @@
 
 #![expect(clippy::print_stdout, reason = "comparisons report their figures")]
 
-use film::{ExrImage, RgbImage, block_means, read_exr};
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use tempfile::TempDir;
+mod program;
+
+use film::{ExrImage, RgbImage, block_means};
+use program::{attempt, file, project, render, run};
+use std::path::PathBuf;
 
 const CACHE: &str = "/Render.LightTransport.indirect=IrradianceCache";
 const RAYS: &str = "/Render.IrradianceCache.rays=256";
 const PHOTONS: &str = "/Render.IrradianceCache.incoming=PhotonGather";
 
 fn scene(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/references");
-    folder.join(name).join("scene.ron")
-}
-
-/// The path of a file in a folder, as an option.
-fn file(folder: &TempDir, name: &str) -> String {
-    folder.path().join(name).to_str().expect("a path of letters").into()
-}
-
-/// Renders a scene with these options and fields to a file.
-fn run(scene: &Path, output: &str, options: &[&str], fields: &[&str]) -> String {
-    let mut program = Command::new(env!("CARGO_BIN_EXE_pipeline"));
-    program
-        .arg("run")
-        .arg(scene)
-        .args(["--quiet", "-o", output])
-        .args(options);
-    for field in fields {
-        program.arg("--set").arg(field);
-    }
-    let ran = program.output().expect("the program starts");
-    let said = String::from_utf8_lossy(&ran.stderr).into_owned();
-    assert!(ran.status.success(), "{options:?} {fields:?}: {}\n{said}", ran.status);
-    said
-}
-
-fn render(scene: &Path, options: &[&str], fields: &[&str]) -> ExrImage {
-    let folder = tempfile::tempdir().expect("a folder for the image");
-    let output = file(&folder, "image.exr");
-    run(scene, &output, options, fields);
-    read_exr(Path::new(&output)).expect("a valid image")
+    project(&format!("tests/references/{name}/scene.ron"))
 }
 
 fn layer(image: &ExrImage, name: &str) -> RgbImage {
@@ -129,8 +100,8 @@ fn threads_and_tiles_change_no_bit() {
         .concat();
         let picture = |name: &str, options: &[&str]| {
             let output = file(&folder, name);
-            let size = ["--resolution", "40x40", "--samples", "4"];
-            run(&glass, &output, &[&size, options].concat(), &fields);
+            let size: &[&str] = &["--resolution", "40x40", "--samples", "4"];
+            run("run", &glass, &[size, options, &["-o", &output]].concat(), &fields);
             std::fs::read(output).expect("a file that was written")
         };
         let first = picture("first.exr", &["--threads", "1"]);
@@ -213,18 +184,9 @@ fn the_cache_agrees_with_path_tracing_on_every_kind_of_surface() {
 fn settings_without_effect_are_told_and_bad_ones_refused() {
     let folder = tempfile::tempdir().expect("a folder for images");
     let output = file(&folder, "image.exr");
-    let options = ["--resolution", "8x8", "--samples", "1"];
+    let options = ["--resolution", "8x8", "--samples", "1", "-o", &output];
     let ran = |fields: &[&str]| {
-        let mut program = Command::new(env!("CARGO_BIN_EXE_pipeline"));
-        program
-            .arg("run")
-            .arg(scene("furnace"))
-            .args(["-o", &output])
-            .args(options);
-        for field in fields {
-            program.arg("--set").arg(field);
-        }
-        let ran = program.output().expect("the program starts");
+        let ran = attempt("run", &scene("furnace"), &options, fields);
         (ran.status.code(), String::from_utf8_lossy(&ran.stderr).into_owned())
     };
     let (code, said) = ran(&[RAYS]);

@@ -2,29 +2,12 @@
 
 #![expect(clippy::print_stdout, reason = "the variances are the result")]
 
-use film::{ExrImage, read_exr};
-use std::path::{Path, PathBuf};
-use std::process::Command;
+mod program;
 
-fn scene(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
-}
+use film::ExrImage;
+use program::{project, render};
 
-fn render(scene: &Path, options: &[&str]) -> ExrImage {
-    let folder = tempfile::tempdir().expect("a folder for the image");
-    let output = folder.path().join("image.exr");
-    let ran = Command::new(env!("CARGO_BIN_EXE_pipeline"))
-        .arg("run")
-        .arg(scene)
-        .args(["--quiet", "--resolution", "96x96", "-o"])
-        .arg(&output)
-        .args(options)
-        .output()
-        .expect("the program starts");
-    let said = String::from_utf8_lossy(&ran.stderr);
-    assert!(ran.status.success(), "{options:?}: {said}");
-    read_exr(&output).expect("a valid image")
-}
+const SIZE: [&str; 2] = ["--resolution", "96x96"];
 
 /// Mean of an image and the variance of that mean, from the batches of its pixels; green, where eyes and most light are.
 fn mean_and_variance(image: &ExrImage) -> (f64, f64) {
@@ -38,7 +21,7 @@ fn mean_and_variance(image: &ExrImage) -> (f64, f64) {
 
 #[test]
 fn guided_paths_find_the_same_light_with_less_noise_where_it_is_uneven() {
-    const GUIDED: [&str; 2] = ["--set", "/Render.PathGuiding.mix=0.5"];
+    const GUIDED: [&str; 1] = ["/Render.PathGuiding.mix=0.5"];
     for (name, plain, guided, least_gain) in [
         (
             "scenes/spotlit.ron",
@@ -49,9 +32,11 @@ fn guided_paths_find_the_same_light_with_less_noise_where_it_is_uneven() {
         ("tests/references/small_interior/scene.ron", &[], &GUIDED, 0.0),
         ("tests/references/cornell/scene.ron", &[], &GUIDED, 0.0),
     ] {
-        let measured =
-            |options: &[&str]| mean_and_variance(&render(&scene(name), &[&["--samples", "64"], options].concat()));
-        let ((plain, plain_variance), (guided, guided_variance)) = (measured(plain), measured(guided));
+        let measured = |options: &[&str], fields: &[&str]| {
+            let options = [&SIZE[..], &["--samples", "64"], options].concat();
+            mean_and_variance(&render(&project(name), &options, fields))
+        };
+        let ((plain, plain_variance), (guided, guided_variance)) = (measured(plain, &[]), measured(&[], guided));
         let z = (guided - plain) / (guided_variance + plain_variance).sqrt();
         let gain = plain_variance / guided_variance;
         println!("{name}: {guided} guided, {plain} plain, z = {z:.2}; variance {gain:.2} times lower");
@@ -64,18 +49,15 @@ fn guided_paths_find_the_same_light_with_less_noise_where_it_is_uneven() {
 #[test]
 fn guided_paths_are_the_same_on_any_number_of_threads() {
     let picture = |threads: &str| {
-        let options = [
-            "--samples",
-            "4",
-            "--threads",
-            threads,
-            "--set",
-            "/Render.PathGuiding.photons=5000",
-        ];
-        render(&scene("scenes/spotlit.ron"), &options)
-            .rgb("")
-            .expect("R, G, B")
-            .pixels
+        let options = [&SIZE[..], &["--samples", "4", "--threads", threads]].concat();
+        render(
+            &project("scenes/spotlit.ron"),
+            &options,
+            &["/Render.PathGuiding.photons=5000"],
+        )
+        .rgb("")
+        .expect("R, G, B")
+        .pixels
     };
     let first = picture("1");
     for threads in ["2", "3"] {

@@ -2,11 +2,12 @@
 
 #![expect(clippy::print_stdout, reason = "furnaces report their figures")]
 
-use film::{ExrImage, RgbImage, block_means, read_exr};
+mod program;
+
+use film::{ExrImage, RgbImage, block_means};
 use glam::Vec3;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use tempfile::TempDir;
+use program::{attempt, file, project, render, run};
+use std::path::PathBuf;
 
 const DIRECT: &str = "/Render.LightTransport.direct=PhotonMap";
 const CAUSTIC: &str = "/Render.LightTransport.caustic=PhotonMap";
@@ -14,32 +15,7 @@ const INDIRECT: &str = "/Render.LightTransport.indirect=PhotonMap";
 const GATHER: &str = "/Render.LightTransport.indirect=FinalGather";
 
 fn scene(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/references");
-    folder.join(name).join("scene.ron")
-}
-
-/// Runs the program with these options and fields.
-fn run(command: &str, scene: &Path, options: &[&str], fields: &[&str]) {
-    let mut program = Command::new(env!("CARGO_BIN_EXE_pipeline"));
-    program.arg(command).arg(scene).arg("--quiet").args(options);
-    for field in fields {
-        program.arg("--set").arg(field);
-    }
-    let ran = program.output().expect("the program starts");
-    let said = String::from_utf8_lossy(&ran.stderr);
-    assert!(ran.status.success(), "{options:?} {fields:?}: {}\n{said}", ran.status);
-}
-
-/// The path of a file in a folder, as an option.
-fn file(folder: &TempDir, name: &str) -> String {
-    folder.path().join(name).to_str().expect("a path of letters").into()
-}
-
-fn render(scene: &Path, options: &[&str], fields: &[&str]) -> ExrImage {
-    let folder = tempfile::tempdir().expect("a folder for the image");
-    let output = file(&folder, "image.exr");
-    run("run", scene, &[options, &["-o", &output]].concat(), fields);
-    read_exr(Path::new(&output)).expect("a valid image")
+    project(&format!("tests/references/{name}/scene.ron"))
 }
 
 fn beauty(image: &ExrImage) -> RgbImage {
@@ -147,7 +123,7 @@ fn gathered_furnaces_shine_alike_everywhere() {
 #[test]
 fn no_light_leaks_through_a_wall() {
     const SIDE: usize = 96;
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/thin_wall.ron");
+    let path = project("scenes/thin_wall.ron");
     let methods: [(&str, &[&str]); 3] = [
         ("maps that are seen", &[DIRECT, CAUSTIC, INDIRECT]),
         ("gathering", &[GATHER, "/Render.FinalGather.precomputed=false"]),
@@ -277,15 +253,15 @@ fn photons_of_another_scene_are_refused() {
     );
     let refused = |bytes: &[u8], expected: &str| {
         std::fs::write(&photons, bytes).expect("a writable folder");
-        let ran = Command::new(env!("CARGO_BIN_EXE_pipeline"))
-            .arg("run")
-            .arg(scene("cornell_glass"))
-            .args(["--quiet", "--photons", &photons, "-o", &file(&folder, "image.exr")])
-            .args(SMALL_OPTIONS)
-            .args(SMALL.iter().flat_map(|field| ["--set", field]))
-            .args(["--seed", if expected.contains("seed") { "8" } else { "0" }])
-            .output()
-            .expect("the program starts");
+        let image = file(&folder, "image.exr");
+        let seed = if expected.contains("seed") { "8" } else { "0" };
+        let options = ["--photons", &photons, "-o", &image, "--seed", seed];
+        let ran = attempt(
+            "run",
+            &scene("cornell_glass"),
+            &[&options[..], &SMALL_OPTIONS].concat(),
+            &SMALL,
+        );
         let said = String::from_utf8_lossy(&ran.stderr);
         assert_eq!(ran.status.code(), Some(2), "{said}");
         assert!(said.contains("bad-photons") && said.contains(expected), "{said}");
@@ -337,7 +313,7 @@ fn photons_are_drawn_and_written_down() {
 /// Every figure of the lecture is a scene, and none is black.
 #[test]
 fn the_figures_of_the_lecture_render() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/lecture");
+    let folder = project("scenes/lecture");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).expect("the lecture's scenes") {
         let path = entry.expect("a readable folder").path();

@@ -2,10 +2,11 @@
 
 #![expect(clippy::print_stdout, reason = "comparisons report their figures")]
 
+mod program;
+
 use film::{RgbImage, block_means, read_exr};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use tempfile::TempDir;
+use program::{attempt, file, project, render, run};
+use std::path::PathBuf;
 
 /// Read where the eye looks.
 const SEEN: &[&str] = &["/Render.LightTransport.indirect=Radiosity"];
@@ -17,33 +18,11 @@ const GATHERED: &[&str] = &[
 ];
 
 fn scene(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/references");
-    folder.join(name)
+    project(&format!("tests/references/{name}/scene.ron"))
 }
 
-fn run(name: &str, options: &[&str], fields: &[&str]) -> Output {
-    let mut program = Command::new(env!("CARGO_BIN_EXE_pipeline"));
-    program
-        .arg("run")
-        .arg(scene(name).join("scene.ron"))
-        .arg("--quiet")
-        .args(options);
-    program.args(fields.iter().flat_map(|field| ["--set", field]));
-    program.output().expect("the program starts")
-}
-
-fn rendered(folder: &TempDir, name: &str, options: &[&str], fields: &[&str]) -> PathBuf {
-    let path = folder.path().join("image.exr");
-    let output = path.to_str().expect("a path of letters");
-    let ran = run(name, &[options, &["-o", output]].concat(), fields);
-    assert!(ran.status.success(), "{name}: {}", String::from_utf8_lossy(&ran.stderr));
-    path
-}
-
-fn render(name: &str, options: &[&str], fields: &[&str]) -> RgbImage {
-    let folder = tempfile::tempdir().expect("a folder for the image");
-    let path = rendered(&folder, name, options, fields);
-    read_exr(&path).expect("a valid image").rgb("").expect("R, G, B")
+fn beauty(name: &str, options: &[&str], fields: &[&str]) -> RgbImage {
+    render(&scene(name), options, fields).rgb("").expect("R, G, B")
 }
 
 fn means(image: &RgbImage) -> [f64; 3] {
@@ -56,7 +35,7 @@ fn furnaces_shine_alike() {
     const MEAN: f64 = 0.005;
     for name in ["furnace", "furnace80"] {
         for (label, fields) in [("seen", SEEN), ("gathered", GATHERED)] {
-            let image = render(name, &["--resolution", "64x64", "--samples", "16"], fields);
+            let image = beauty(name, &["--resolution", "64x64", "--samples", "16"], fields);
             let mean = means(&image)[1];
             let blocks = block_means(&image, 8);
             let worst = blocks.pixels.iter().map(|p| (p[1] - 1.0).abs()).fold(0.0, f32::max);
@@ -72,8 +51,8 @@ fn furnaces_shine_alike() {
 /// How far the Cornell box is from its reference: the means of the image, and blocks at the median and 95th percentile.
 fn assert_cornell(label: &str, side: u32, samples: &str, fields: &[&str], [most_mean, median, high]: [f64; 3]) {
     let resolution = format!("{side}x{side}");
-    let image = render("cornell", &["--resolution", &resolution, "--samples", samples], fields);
-    let reference = read_exr(&scene("cornell").join("reference.exr")).expect("a valid image");
+    let image = beauty("cornell", &["--resolution", &resolution, "--samples", samples], fields);
+    let reference = read_exr(&project("tests/references/cornell/reference.exr")).expect("a valid image");
     let reference = reference.rgb("").expect("R, G, B");
     let off = |c: usize| means(&image)[c] / means(&reference)[c] - 1.0;
     let off = [off(0), off(1), off(2)];
@@ -118,8 +97,10 @@ fn threads_change_no_bit() {
         let fields = [fields, &[coarse]].concat();
         let picture = |threads: &str| {
             let folder = tempfile::tempdir().expect("a folder for the image");
-            let options = [&options[..], &["--threads", threads, "--tile-size", "7"]].concat();
-            std::fs::read(rendered(&folder, "cornell_glass", &options, &fields)).expect("a file that was written")
+            let output = file(&folder, "image.exr");
+            let more = ["--threads", threads, "--tile-size", "7", "-o", &output];
+            run("run", &scene("cornell_glass"), &[&options[..], &more].concat(), &fields);
+            std::fs::read(output).expect("a file that was written")
         };
         let first = picture("1");
         assert!(["2", "3"].iter().all(|threads| picture(threads) == first), "{fields:?}");
@@ -129,7 +110,7 @@ fn threads_change_no_bit() {
 #[test]
 fn what_is_too_much_is_refused_with_a_remedy() {
     let tiny = [SEEN, &["/Render.Radiosity.patch_size=0.0001"]].concat();
-    let ran = run("cornell", &["-o", "none.exr"], &tiny);
+    let ran = attempt("run", &scene("cornell"), &["-o", "none.exr"], &tiny);
     let said = String::from_utf8_lossy(&ran.stderr);
     assert_eq!(ran.status.code(), Some(2), "{said}");
     assert!(
@@ -137,14 +118,9 @@ fn what_is_too_much_is_refused_with_a_remedy() {
         "{said}"
     );
     let folder = tempfile::tempdir().expect("a folder for the image");
-    let output = folder.path().join("image.exr");
-    let output = output.to_str().expect("a path of letters");
-    let unused = ["/Render.Radiosity.rays=8"];
-    let ran = run(
-        "cornell",
-        &["--resolution", "8x8", "--samples", "1", "-o", output],
-        &unused,
-    );
+    let output = file(&folder, "image.exr");
+    let options = ["--resolution", "8x8", "--samples", "1", "-o", &output];
+    let ran = attempt("run", &scene("cornell"), &options, &["/Render.Radiosity.rays=8"]);
     let said = String::from_utf8_lossy(&ran.stderr);
     assert!(
         said.contains("unused-settings") && said.contains("`Radiosity` has no effect"),
