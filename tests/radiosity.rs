@@ -2,8 +2,10 @@
 
 #![expect(clippy::print_stdout, reason = "comparisons report their figures")]
 
+mod blocks;
 mod program;
 
+use blocks::Quantiles;
 use film::{RgbImage, block_means, read_exr};
 use program::{attempt, file, project, render, run};
 use std::path::PathBuf;
@@ -60,20 +62,10 @@ fn assert_cornell(label: &str, side: u32, samples: &str, fields: &[&str], [most_
         block_means(&image, 8),
         block_means(&reference, 8 * reference.width / side),
     );
-    let relative = |(ours, theirs): (&[f32; 3], &[f32; 3])| {
-        let channel = |c: usize| match theirs[c] {
-            0.0 => 0.0,
-            theirs => f64::from((ours[c] - theirs).abs() / theirs),
-        };
-        channel(0).max(channel(1)).max(channel(2))
-    };
-    let mut errors: Vec<f64> = blocks.pixels.iter().zip(&expected.pixels).map(relative).collect();
-    errors.sort_by(f64::total_cmp);
-    let quantile = |share: f64| errors[(share * (errors.len() - 1) as f64).round() as usize];
-    let found = [quantile(0.5), quantile(0.95), quantile(1.0)];
-    println!("cornell, {label}, {resolution}: means off by {off:.4?}, blocks by {found:.4?}");
+    let found = Quantiles::of(&blocks, &expected);
+    println!("cornell, {label}, {resolution}: means off by {off:.4?}, {found}");
     assert!(off.iter().all(|off| off.abs() < most_mean), "{label}: {off:?}");
-    assert!(found[0] < median && found[1] < high, "{label}: {found:?}");
+    assert!(found.within([median, high]), "{label}: {found}");
 }
 
 #[test]

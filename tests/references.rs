@@ -4,11 +4,12 @@
 
 #![expect(clippy::print_stdout, reason = "a full comparison reports its figures")]
 
+mod blocks;
 mod significance;
 
+use blocks::Quantiles;
 use film::{BATCHES, ExrImage, Image, Metadata, RgbImage, block_means, compare, difference, read_exr, write_exr};
 use significance::{Measured, RUNS, SIDES, Verdict, test_blocks};
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -190,60 +191,6 @@ fn irradiance_cache_meets_the_reference_on_cornell() {
         &reference,
         &found_text,
     );
-}
-
-/// How far blocks are off, relative to their own means in the reference, the largest of the channels.
-struct Quantiles {
-    count: usize,
-    median: f64,
-    high: f64,
-    most: f64,
-}
-
-impl Quantiles {
-    fn of(blocks: &RgbImage, reference: &RgbImage) -> Self {
-        Self::with_floor(blocks, reference, 0.0)
-    }
-
-    /// - `floor`: blocks darker than this share of the mean of all count as if they were as bright; where there is next to
-    ///   no light, there is nothing to be relative to.
-    fn with_floor(blocks: &RgbImage, reference: &RgbImage, floor: f64) -> Self {
-        assert_eq!(blocks.pixels.len(), reference.pixels.len());
-        let values = reference.pixels.as_flattened();
-        let floor = floor * values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len() as f64;
-        let relative = |ours: f32, theirs: f32| match f64::from(ours) - f64::from(theirs) {
-            0.0 => 0.0,
-            difference => difference.abs() / f64::from(theirs).max(floor),
-        };
-        let error = |(ours, theirs): (&[f32; 3], &[f32; 3])| {
-            let channel = |c: usize| relative(ours[c], theirs[c]);
-            (0..3).map(channel).fold(0.0, f64::max)
-        };
-        let mut errors: Vec<f64> = blocks.pixels.iter().zip(&reference.pixels).map(error).collect();
-        errors.sort_by(f64::total_cmp);
-        let quantile = |share: f64| errors[(share * (errors.len() - 1) as f64).round() as usize];
-        Self {
-            count: errors.len(),
-            median: quantile(0.5),
-            high: quantile(0.95),
-            most: quantile(1.0),
-        }
-    }
-
-    fn within(&self, [median, high]: [f64; 2]) -> bool {
-        self.median < median && self.high < high
-    }
-}
-
-impl fmt::Display for Quantiles {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let [median, high, most] = [self.median, self.high, self.most].map(|share| 100.0 * share);
-        write!(
-            f,
-            "{} blocks off by {median:.2} % at the median, {high:.2} % at the 95th percentile, {most:.1} % at most",
-            self.count
-        )
-    }
 }
 
 /// The same for blocks of the references of others.
