@@ -19,7 +19,7 @@ mod stream;
 mod texture_store;
 pub mod vocabulary;
 
-pub use irradiance::{BuiltIrradianceCache, IrradianceRecord};
+pub use irradiance::{BuiltIrradianceCache, IrradianceRecord, RECORD_DEPTHS};
 pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
 pub use patch::{PatchDemand, RadiosityPatch, SolvedPatches};
 pub use photon::{

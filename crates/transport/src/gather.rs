@@ -1,4 +1,4 @@
-use crate::irradiance::{CacheAnswer, IrradianceCache, reflect_coarsely};
+use crate::irradiance::{CacheAnswer, IrradianceCache, reflect_irradiance};
 use crate::path::{Path, arrive, emitted_light, sample_direct_light_at, scatter_at};
 use crate::path_class::{CausticMethod, DirectMethod, Event, IndirectMethod, Methods, PathClass};
 use crate::photon::MapKind;
@@ -9,6 +9,8 @@ use crate::vertex::Vertex;
 use radiometry::{Rgb, StageKey};
 use spatial::Ray;
 
+/// Key of the random numbers of lights where several are sampled at the end of a ray.
+const LIGHT_STAGE: StageKey = StageKey::new("final_gather/lights");
 /// Key of the random numbers of gather rays.
 const GATHER_STAGE: StageKey = StageKey::new("final_gather");
 
@@ -41,6 +43,8 @@ pub struct GatherMethods {
     deep: Methods,
     /// After a D vertex whose indirect light a cache has told, as seen from there.
     told: Methods,
+    /// Lights that are sampled at the first D vertex of a ray.
+    lights: u32,
 }
 
 impl GatherMethods {
@@ -70,7 +74,15 @@ impl GatherMethods {
                 indirect: IndirectMethod::IrradianceCache,
                 ..shallow
             },
+            lights: 1,
         }
+    }
+
+    /// With so many lights sampled at the first D vertex of a ray, at least 1: a ray that is one of a stratum of its own has noise of
+    /// which light was chosen, and little else.
+    #[must_use]
+    pub fn with_lights(self, lights: u32) -> Self {
+        Self { lights, ..self }
     }
 }
 
@@ -149,6 +161,8 @@ pub(crate) fn light_along(
     let mut length = 0.0;
     // Since a D vertex whose indirect light is known, all there is to find is its direct light and its caustics.
     let mut is_told = false;
+    // That of a ray's first D vertex, which is nearly all that it sees.
+    let mut lights = methods.lights.max(1);
     loop {
         let hit = arrive(scene, &mut path, &ray);
         let methods = if is_told {
@@ -177,7 +191,18 @@ pub(crate) fn light_along(
         };
         let is_read = known == Known::All;
         if !is_read {
-            sample_direct_light_at(scene, methods, &path, ray.time, &vertex, |_, direct| light += direct);
+            for number in 0..lights {
+                let path = Path {
+                    throughput: path.throughput * (1.0 / lights as f32),
+                    stream: if lights == 1 {
+                        path.stream
+                    } else {
+                        path.stream.split(LIGHT_STAGE, lights, number)
+                    },
+                    ..path
+                };
+                sample_direct_light_at(scene, methods, &path, ray.time, &vertex, |_, direct| light += direct);
+            }
         } else if !vertex.bsdf.has_specular() {
             return seen(light, distance);
         }
@@ -189,6 +214,7 @@ pub(crate) fn light_along(
                 return seen(light, distance);
             }
             length = 0.0;
+            lights = 1;
             if known == Known::Indirect {
                 is_told = true;
                 path.class = PathClass::EYE.after(Event::Diffuse);
@@ -238,7 +264,7 @@ fn what_is_reflected(
             }
             _ => (Known::Nothing, Rgb::BLACK),
         },
-        Incoming::Records(cache) => match reflect_coarsely(scene, cache, path, time, vertex) {
+        Incoming::Records(cache) => match reflect_irradiance(scene, cache, path, time, vertex) {
             CacheAnswer::Light(light) => (Known::Indirect, light),
             CacheAnswer::Missing | CacheAnswer::Unsuited => (Known::Nothing, Rgb::BLACK),
         },

@@ -1,7 +1,7 @@
 use bevy_ecs::prelude::*;
 use glam::{UVec2, Vec2};
 use pipeline_core::{Progress, record_items};
-use pipeline_data::{CameraFrame, RenderSettings};
+use pipeline_data::{CameraFrame, RECORD_DEPTHS, RenderSettings};
 use radiometry::{SampleStream, StageKey};
 use spatial::Ray;
 use transport::{IrradianceRecord, Path, Site};
@@ -15,6 +15,12 @@ const PATH_STAGE: StageKey = StageKey::new("irradiance_cache/paths");
 /// before them have missed; they cost little.
 const STEPS: [u32; 10] = [32, 16, 8, 4, 2, 1, 1, 1, 1, 1];
 
+/// Camera rays of the levels by which deep places are found, about: these are places of the scene, not of the picture.
+const DEEP_RAYS: [u32; 3] = [256, 1024, 4096];
+
+/// Levels of all depths.
+const LEVELS: usize = (RECORD_DEPTHS - 1) * DEEP_RAYS.len() + STEPS.len();
+
 /// Most camera rays at a time, so that memory does not grow with the picture.
 const WAVE_RAYS: u32 = 1 << 16;
 
@@ -23,8 +29,10 @@ const WAVE_RAYS: u32 = 1 << 16;
 pub(super) struct CacheFill {
     /// Of the render whose photons are read; 0 without.
     pub(super) generation: u32,
-    /// Index in [`STEPS`].
+    /// Of the next wave: the deepest records come first.
     pub(super) level: usize,
+    /// Of the records of this wave.
+    pub(super) depth: usize,
     /// First cell of the next wave.
     pub(super) next_cell: u32,
     /// Pixels between the camera rays of this wave.
@@ -37,14 +45,34 @@ pub(super) struct CacheFill {
     pub(super) chosen: Vec<Site>,
     /// Their records.
     pub(super) sampled: Vec<IrradianceRecord>,
-    /// Number of the next record.
-    pub(super) next_number: u32,
+    /// Number of the next record, by depth.
+    pub(super) next_number: [u32; RECORD_DEPTHS],
 }
 
 impl CacheFill {
+    /// - `is_deep`: whether records of all depths are asked for, or only those that the eye reads.
+    /// - `generation`: see [`CacheFill::generation`].
+    pub(super) fn new(is_deep: bool, generation: u32) -> Self {
+        Self {
+            generation,
+            level: if is_deep { 0 } else { LEVELS - STEPS.len() },
+            ..Self::default()
+        }
+    }
+
+    /// Depth of the records of the next wave, and the distance between its camera rays in pixels.
+    fn next_level(&self, pixels: u32) -> (usize, u32) {
+        let (turn, level) = (self.level / DEEP_RAYS.len(), self.level % DEEP_RAYS.len());
+        if turn < RECORD_DEPTHS - 1 {
+            (RECORD_DEPTHS - 1 - turn, (pixels / DEEP_RAYS[level]).isqrt().max(1))
+        } else {
+            (0, STEPS[self.level + STEPS.len() - LEVELS])
+        }
+    }
+
     /// True when nothing is missing at any level.
     pub(super) fn is_over(&self) -> bool {
-        self.level >= STEPS.len() && self.missing.is_empty()
+        self.level >= LEVELS && self.missing.is_empty()
     }
 }
 
@@ -56,15 +84,16 @@ pub(super) fn generate_rays(
     progress: Res<Progress>,
 ) {
     let fill = &mut *fill;
-    if fill.level == 0 && fill.next_cell == 0 && fill.generation == 0 && fill.next_number == 0 {
-        progress.start("records", "levels", STEPS.len() as u64);
+    if fill.step == 0 && fill.generation == 0 {
+        progress.start("records", "levels", LEVELS as u64);
     }
     if !fill.missing.is_empty() || fill.is_over() {
         return;
     }
-    let (step, level) = (STEPS[fill.level], fill.level as u32);
-    fill.step = step;
+    let level = fill.level as u32;
     let size = settings.crop_max - settings.crop_min;
+    let (depth, step) = fill.next_level(size.x * size.y);
+    (fill.depth, fill.step) = (depth, step);
     let cells = UVec2::new(size.x.div_ceil(step), size.y.div_ceil(step));
     let end = (cells.x * cells.y).min(fill.next_cell + WAVE_RAYS);
     let ray = |cell: u32| {

@@ -17,11 +17,16 @@ pub(super) fn insert_records(mut commands: Commands, mut fill: ResMut<CacheFill>
     let sampled = std::mem::take(&mut fill.sampled);
     record_items(sampled.len());
     counter.0.add(sampled.len() as u64);
-    let first = fill.next_number;
-    fill.next_number += sampled.len() as u32;
+    let depth = fill.depth;
+    let first = fill.next_number[depth];
+    fill.next_number[depth] += sampled.len() as u32;
     let numbered: Vec<IrradianceRecord> = (first..)
         .zip(sampled)
-        .map(|(number, record)| IrradianceRecord { number, record })
+        .map(|(number, record)| IrradianceRecord {
+            number,
+            depth: depth as u32,
+            record,
+        })
         .collect();
     commands.spawn_batch(numbered);
 }
@@ -37,10 +42,12 @@ pub(super) fn maintain_octree(
     mut clock: ResMut<RenderClock>,
     mut report: ResMut<Report>,
 ) {
-    let known = cache.0.records().len();
+    let is_filled = |entity: &IrradianceRecord| entity.depth as usize == fill.depth;
+    let filled = &mut cache.0[fill.depth];
+    let known = filled.records().len();
     let mut new: Vec<IrradianceRecord> = entities
         .iter()
-        .filter(|entity| entity.number as usize >= known)
+        .filter(|entity| is_filled(entity) && entity.number as usize >= known)
         .copied()
         .collect();
     record_items(new.len());
@@ -48,16 +55,18 @@ pub(super) fn maintain_octree(
     if !new.is_empty() {
         new.sort_unstable_by_key(|entity| entity.number);
         let records: Vec<_> = new.iter().map(|entity| entity.record).collect();
-        result = cache.0.insert(&records);
-        for mut entity in &mut entities {
-            let range = cache.0.records().get(entity.number as usize).map(|record| record.range);
+        result = filled.insert(&records);
+        for mut entity in entities.iter_mut().filter(|entity| is_filled(entity)) {
+            let range = filled.records().get(entity.number as usize).map(|record| record.range);
             if let Some(range) = range.filter(|range| *range != entity.record.range) {
                 entity.record.range = range;
             }
         }
     }
     if fill.is_over() {
-        result = result.and_then(|()| cache.0.rebuild(&scene.0.rays.bounds()));
+        for filled in &mut cache.0 {
+            result = result.and_then(|()| filled.rebuild(&scene.0.rays.bounds()));
+        }
         commands.remove_resource::<CacheFill>();
         clock.records_pending -= 1;
     }

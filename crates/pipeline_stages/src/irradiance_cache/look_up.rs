@@ -69,7 +69,7 @@ pub(super) fn look_up_irradiance(
                     continue;
                 }
                 lookups += 1;
-                let answer = transport::reflect_irradiance(&scene.0, &cache.0, path, ray.time, &vertex);
+                let answer = transport::reflect_irradiance(&scene.0, cache.seen(), path, ray.time, &vertex);
                 let mut trace = |rays| {
                     transport::gather_indirect(
                         &scene.0,

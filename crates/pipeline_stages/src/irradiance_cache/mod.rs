@@ -14,8 +14,10 @@
 //! same, sampled in parallel, and inserted in a fixed order. After that the cache is only read. A record's random numbers depend
 //! on its number alone, so the image is the same whatever the threads.
 //!
-//! Rays of records go on as paths, but where they end they read those records that there are already, a sparse and wide subset
-//! of them: light of many reflections then has the noise of their mean, not that of a single path.
+//! Rays of records do not go on as paths: where they end they read deeper records, sparse and wide, for the light of further
+//! reflections, which then has the noise of their mean, not that of a single path. Deep records lie where rays of others end,
+//! behind the camera as well, and are made first: the deepest of paths to the end, those of the next depth by reading them. The eye
+//! reads none of them.
 //!
 //! What the cache is not asked, and what no record tells of, is traced: glossy D lobes, normal maps, things that move,
 //! and places that only a lens or a moment shows. The cache is filled through a pinhole, at random moments.
@@ -62,7 +64,7 @@ pub struct IrradianceCache {
     #[reflect(@Range::closed(1.0, 1024.0))]
     pub cell_records: u32,
     /// Extrapolate records by the gradients of their light, and weigh them smoothly. Off: as irradiance caching was at first,
-    /// to compare.
+    /// with the harmonic mean for its metric, to compare.
     pub gradients: bool,
     /// Least radius within which a record holds, in pixels. Higher makes fewer records in corners, and blurs them.
     #[reflect(@Range::closed(0.1, 100.0))]
@@ -72,6 +74,8 @@ pub struct IrradianceCache {
     pub max_spacing: f32,
     /// Where the light at the ends of rays comes from.
     pub incoming: IncomingLight,
+    /// How far from its place a record holds.
+    pub metric: ErrorMetric,
 }
 
 impl Default for IrradianceCache {
@@ -84,6 +88,27 @@ impl Default for IrradianceCache {
             min_spacing: 1.5,
             max_spacing: 40.0,
             incoming: IncomingLight::default(),
+            metric: ErrorMetric::default(),
+        }
+    }
+}
+
+/// How the distance is found within which a record holds.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default)]
+pub enum ErrorMetric {
+    /// By how fast the gradient of the light changes over the surface, in the light of what is seen of it.
+    #[default]
+    OcclusionHessian,
+    /// By the harmonic mean of the distances of what is around.
+    HarmonicMean,
+}
+
+impl From<ErrorMetric> for transport::ErrorMetric {
+    fn from(metric: ErrorMetric) -> Self {
+        match metric {
+            ErrorMetric::OcclusionHessian => Self::OcclusionHessian,
+            ErrorMetric::HarmonicMean => Self::HarmonicMean,
         }
     }
 }

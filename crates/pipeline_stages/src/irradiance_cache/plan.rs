@@ -1,23 +1,31 @@
 use super::fill::CacheFill;
-use super::{IncomingLight, IrradianceCache};
+use super::{ErrorMetric, IncomingLight, IrradianceCache};
 use bevy_ecs::prelude::*;
 use pipeline_core::RenderClock;
 use pipeline_data::vocabulary::{Findings, SceneReport, component_place, field_place};
-use pipeline_data::{BuiltIrradianceCache, IrradianceRecord, PhotonDemand, PrimIndex, RenderSettings, TransportScene};
+use pipeline_data::{
+    BuiltIrradianceCache, IrradianceRecord, PhotonDemand, PrimIndex, RECORD_DEPTHS, RenderSettings, TransportScene,
+};
 use scene_format::Diagnostic;
 use transport::{CacheSettings, GatherMethods, Hemisphere, IndirectMethod, MapKind, MapKinds, Spacing};
 
-/// Rays of the records that all others read, in rays of others.
-const FIRST_RAYS: u32 = 4;
+/// 1/a of deep records: few that hold far.
+const DEEP_MIN_WEIGHT: f32 = 5.0;
+
+/// Least radius within which a deep record holds, in pixels.
+const DEEP_SPACING: f32 = 16.0;
+
+/// Lights that are sampled where the ray of a record ends.
+const LIGHTS: u32 = 4;
 
 /// How the cache is filled and read. Written by `plan_cache`; present where it is.
 #[derive(Resource, Clone, Copy, Debug)]
 pub(super) struct CachePlan {
     pub(super) hemisphere: Hemisphere,
-    /// Of the records that all others read.
-    pub(super) first_hemisphere: Hemisphere,
-    pub(super) settings: CacheSettings,
-    pub(super) spacing: Spacing,
+    /// By depth.
+    pub(super) settings: [CacheSettings; RECORD_DEPTHS],
+    /// By depth.
+    pub(super) spacing: [Spacing; RECORD_DEPTHS],
     /// Of the rays of records.
     pub(super) methods: GatherMethods,
     pub(super) reads_photons: bool,
@@ -79,21 +87,39 @@ pub(super) fn plan_cache(
         // As many as their settings say.
         demand.photons = None;
     }
+    // The Hessian bounds the error of a linear change: without gradients there is none.
+    let metric = if chosen.gradients {
+        chosen.metric
+    } else {
+        ErrorMetric::HarmonicMean
+    };
+    let seen = CacheSettings {
+        min_weight: chosen.min_weight,
+        cell_records: chosen.cell_records as usize,
+        gradients: chosen.gradients,
+        metric: metric.into(),
+    };
+    let seen_spacing = Spacing {
+        min_pixels: chosen.min_spacing,
+        max_pixels: chosen.max_spacing,
+        most: scene.0.rays.bounds().diagonal().max(f32::MIN_POSITIVE),
+    };
+    // Distances alone decide how far deep records hold: those have no noise.
+    let deep = CacheSettings {
+        min_weight: DEEP_MIN_WEIGHT,
+        metric: transport::ErrorMetric::HarmonicMean,
+        ..seen
+    };
+    let deep_spacing = Spacing {
+        min_pixels: DEEP_SPACING,
+        max_pixels: f32::MAX,
+        ..seen_spacing
+    };
     let plan = CachePlan {
         hemisphere: Hemisphere::of_rays(chosen.rays),
-        first_hemisphere: Hemisphere::of_rays(chosen.rays.saturating_mul(FIRST_RAYS)),
-        settings: CacheSettings {
-            min_weight: chosen.min_weight,
-            cell_records: chosen.cell_records as usize,
-            gradients: chosen.gradients,
-        },
-        spacing: Spacing {
-            min_pixels: chosen.min_spacing,
-            max_pixels: chosen.max_spacing,
-            min_weight: chosen.min_weight,
-            most: scene.0.rays.bounds().diagonal().max(f32::MIN_POSITIVE),
-        },
-        methods: GatherMethods::new(&settings.methods, reads_photons),
+        settings: [seen, deep, deep],
+        spacing: [seen_spacing, deep_spacing, deep_spacing],
+        methods: GatherMethods::new(&settings.methods, reads_photons).with_lights(LIGHTS),
         reads_photons,
     };
     commands.insert_resource(plan);
@@ -101,14 +127,14 @@ pub(super) fn plan_cache(
     clock.records_pending = 1;
 }
 
-/// Asks for records, the cache as empty as at first.
+/// Asks for records, the caches as empty as at first.
 fn begin(commands: &mut Commands<'_, '_>, plan: &CachePlan, scene: &TransportScene, generation: u32) {
-    let cache = transport::IrradianceCache::new(plan.settings, &scene.0.rays.bounds());
-    commands.insert_resource(BuiltIrradianceCache(cache));
-    commands.insert_resource(CacheFill {
-        generation,
-        ..CacheFill::default()
-    });
+    let bounds = scene.0.rays.bounds();
+    let empty = plan
+        .settings
+        .map(|settings| transport::IrradianceCache::new(settings, &bounds));
+    commands.insert_resource(BuiltIrradianceCache(empty));
+    commands.insert_resource(CacheFill::new(!plan.reads_photons, generation));
 }
 
 /// True when photons have landed that records read, and there are records that read others.

@@ -6,10 +6,6 @@ use pipeline_data::{BuiltIrradianceCache, BuiltPhotonMaps, RenderSettings, Trans
 use rayon::prelude::*;
 use transport::{GatherScratch, HemisphereSample, IrradianceRecord, PhotonMaps, RecordRays, Site, summarize};
 
-/// Records read others once camera rays are this near to each other, in pixels. All read the first ones, whose noise would be a
-/// common error of the whole picture: so these are made of paths alone, and of more of them, until there are many.
-const READING_STEP: u32 = 4;
-
 /// The counter of this system, asked for once.
 pub(super) struct RayCounter(Counter);
 
@@ -35,21 +31,18 @@ pub(super) fn sample_records(
     }
     // Without any photon there is nothing to read, and nothing is reflected.
     let empty = PhotonMaps::default();
-    let reads = fill.step <= READING_STEP;
-    let hemisphere = if reads || plan.reads_photons {
-        plan.hemisphere
-    } else {
-        plan.first_hemisphere
-    };
+    let hemisphere = plan.hemisphere;
+    let filled = &cache.0[fill.depth];
     let rays = RecordRays {
         seed: settings.seed,
         methods: plan.methods,
         maps: plan
             .reads_photons
             .then(|| built.as_ref().map_or(&empty, |built| &built.0)),
-        cache: reads.then_some(&cache.0),
+        cache: cache.0.get(fill.depth + 1),
     };
-    let first = u64::from(fill.next_number) | u64::from(fill.generation) << 32;
+    let next = u64::from(fill.next_number[fill.depth]);
+    let first = next | u64::from(fill.generation) << 32 | (fill.depth as u64) << 62;
     let record = |(i, site): (usize, &Site)| -> Option<IrradianceRecord> {
         let samples: Vec<HemisphereSample> = (0..hemisphere.rings())
             .into_par_iter()
@@ -58,8 +51,14 @@ pub(super) fn sample_records(
             })
             .flatten_iter()
             .collect();
-        let record = summarize(&hemisphere, &samples, site, &plan.spacing, plan.settings.gradients)?;
-        cache.0.accepts(&record).ok().map(|()| record)
+        let record = summarize(
+            &hemisphere,
+            &samples,
+            site,
+            &plan.settings[fill.depth],
+            &plan.spacing[fill.depth],
+        )?;
+        filled.accepts(&record).ok().map(|()| record)
     };
     let sampled: Vec<Option<IrradianceRecord>> = chosen.par_iter().enumerate().map(record).collect();
     let count = chosen.len() * hemisphere.rays() as usize;

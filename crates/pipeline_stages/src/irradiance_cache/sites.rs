@@ -32,12 +32,17 @@ pub(super) fn find_sites(
         return;
     }
     let pixel_size = camera.0.pixel_size();
+    let find = if fill.depth == 0 {
+        transport::find_sites
+    } else {
+        transport::find_deep_sites
+    };
     let found: Vec<Site> = rays
         .par_chunks(TASK_RAYS)
         .flat_map_iter(|rays| {
             let mut sites = Vec::new();
             for (path, ray) in rays {
-                transport::find_sites(&scene.0, &settings.methods, *path, *ray, pixel_size, &mut sites);
+                find(&scene.0, &settings.methods, *path, *ray, pixel_size, &mut sites);
             }
             sites
         })
@@ -58,13 +63,14 @@ pub(super) fn choose_sites(
         return;
     }
     record_items(fill.missing.len());
+    let filled = &cache.0[fill.depth];
     let missing = std::mem::take(&mut fill.missing);
     let mut missing: Vec<Site> = missing
         .into_par_iter()
-        .filter(|site| !site.is_covered(&scene.0, &cache.0))
+        .filter(|site| !site.is_covered(&scene.0, filled))
         .collect();
-    let most = (MOST_RAYS / plan.first_hemisphere.rays()).max(1) as usize;
-    let spacing = plan.spacing.min_pixels.max(fill.step as f32);
+    let most = (MOST_RAYS / plan.hemisphere.rays()).max(1) as usize;
+    let spacing = plan.spacing[fill.depth].min_pixels.max(fill.step as f32);
     let is_chosen = thin(&missing, spacing, most, &scene);
     let mut number = 0;
     fill.chosen.clear();

@@ -1,6 +1,5 @@
-use super::IrradianceRecord;
 use super::clamp::Neighbours;
-use super::coarse::Coarse;
+use super::{ErrorMetric, IrradianceRecord};
 use spatial::{Bounds, RecordOctree, RecordOctreeError};
 
 /// How records are kept and read.
@@ -12,6 +11,8 @@ pub struct CacheSettings {
     pub cell_records: usize,
     /// Whether records are extrapolated by their gradients and weighed smoothly; else as by Ward, Rubinstein and Clear.
     pub gradients: bool,
+    /// How ranges are found.
+    pub metric: ErrorMetric,
 }
 
 /// Extrapolated records are read so many times further than where no other is made beside them. Their weights fall smoothly, so
@@ -37,8 +38,6 @@ pub struct IrradianceCache {
     pub(super) records: Vec<IrradianceRecord>,
     /// Over the spheres within which records hold.
     pub(super) octree: RecordOctree,
-    /// For rays of other records.
-    pub(super) coarse: Coarse,
     neighbours: Neighbours,
 }
 
@@ -52,8 +51,7 @@ impl IrradianceCache {
             settings,
             records: Vec::new(),
             octree: RecordOctree::new(bounds, settings.cell_records),
-            coarse: Coarse::new(settings.min_weight, bounds, settings.cell_records),
-            neighbours: Neighbours::new(bounds),
+            neighbours: Neighbours::new(bounds, settings.metric.ranges_per_distance()),
         }
     }
 
@@ -67,7 +65,7 @@ impl IrradianceCache {
     }
 
     /// Adds records behind those that there are, and lowers the ranges of these and of their neighbours until none exceeds
-    /// that of another by more than the distance between the two.
+    /// that of another by more than the distance between the two, times what the metric lets it.
     ///
     /// Source: Křivánek et al., "Making Radiance and Irradiance Caching Practical", EGSR 2006, section 3.3.
     ///
@@ -88,7 +86,6 @@ impl IrradianceCache {
             let reach = self.reach(&self.records[row]);
             self.octree.insert(self.records[row].position, reach)?;
         }
-        self.coarse.insert(&self.records, first)?;
         result
     }
 
@@ -112,7 +109,6 @@ impl IrradianceCache {
     pub fn memory_bytes(&self) -> usize {
         self.records.capacity() * size_of::<IrradianceRecord>()
             + self.octree.memory_bytes()
-            + self.coarse.memory_bytes()
             + self.neighbours.memory_bytes()
     }
 

@@ -5,20 +5,23 @@ use std::collections::VecDeque;
 /// Records in each other's range, so that ranges can be lowered to what neighbours have found.
 ///
 /// Rays of a record may miss a small thing that those of a neighbour met. By the triangle inequality nothing is further from
-/// a place than from a neighbour and the way there: `r_i ≤ r_j + |x_i − x_j|`.
+/// a place than from a neighbour and the way there: `r_i ≤ r_j + s |x_i − x_j|`, where s is one if ranges are distances.
 #[derive(Clone, Debug)]
 pub(super) struct Neighbours {
     /// Over the spheres of ranges as they were when records came.
     octree: RecordOctree,
+    /// s: by how much a range may grow with the distance.
+    slope: f32,
 }
 
 /// Records of a leaf before it is cut; ranges overlap by the hundred.
 const CELL_RECORDS: usize = 64;
 
 impl Neighbours {
-    pub(super) fn new(bounds: &Bounds) -> Self {
+    pub(super) fn new(bounds: &Bounds, slope: f32) -> Self {
         Self {
             octree: RecordOctree::new(bounds, CELL_RECORDS),
+            slope,
         }
     }
 
@@ -38,7 +41,7 @@ impl Neighbours {
         first: usize,
     ) -> Result<(), RecordOctreeError> {
         for record in &records[first..] {
-            self.octree.insert(record.position, record.range)?;
+            self.octree.insert(record.position, record.range / self.slope)?;
         }
         let mut open: VecDeque<u32> = (first as u32..records.len() as u32).collect();
         let mut is_open = vec![false; records.len()];
@@ -51,12 +54,12 @@ impl Neighbours {
             // Those in whose range it lies: they lower it, and it lowers them.
             for other in self.octree.containing(position) {
                 let distance = records[other as usize].position.distance(position);
-                range = range.min(records[other as usize].range + distance);
+                range = range.min(records[other as usize].range + self.slope * distance);
             }
             records[row as usize].range = range;
             for other in self.octree.containing(position) {
                 let neighbour = &mut records[other as usize];
-                let most = range + neighbour.position.distance(position);
+                let most = range + self.slope * neighbour.position.distance(position);
                 if most < neighbour.range {
                     neighbour.range = most;
                     if !std::mem::replace(&mut is_open[other as usize], true) {

@@ -1,13 +1,8 @@
+use super::strata::{Joined, Strata};
 use super::{Hemisphere, HemisphereSample, RgbGradient};
 use glam::Vec3;
 use radiometry::{Rgb, math};
 use std::f32::consts::TAU;
-
-/// Strata of the hemisphere that are joined in each direction before they are compared.
-///
-/// A translational gradient is made of differences between neighbours, each of them as important as the irradiance itself, so
-/// finer cells have more noise: joining B by B takes it to one B-th. Coarse cells blur where things begin and end.
-const JOINED: u32 = 3;
 
 /// How irradiance changes as the normal turns, in the frame of the normal: `E(n + ω × n) ≈ E + ω · ∇_r E`.
 ///
@@ -37,24 +32,6 @@ pub(super) fn rotational(hemisphere: &Hemisphere, samples: &[HemisphereSample]) 
     gradient
 }
 
-/// A run of strata along one coordinate of the hemisphere that is looked at as one.
-#[derive(Clone, Copy)]
-struct Run {
-    first: u32,
-    end: u32,
-}
-
-/// Cuts `count` strata into runs of about [`JOINED`].
-fn runs(count: u32) -> Vec<Run> {
-    let number = (count / JOINED).max(1);
-    let cut = |i: u32| i * count / number;
-    let run = |i: u32| Run {
-        first: cut(i),
-        end: cut(i + 1),
-    };
-    (0..number).map(run).collect()
-}
-
 /// How irradiance changes as the place moves within the surface, in the frame of the normal.
 ///
 /// What is seen at distance r moves by sin- and cosine-weighted angles, so cells grow at the expense of their neighbours:
@@ -65,13 +42,13 @@ fn runs(count: u32) -> Vec<Run> {
 /// Noise makes gradients longer: of the square of the length, what the spread of samples within cells would make by itself is taken
 /// off, `∇_t E · max(0, 1 − σ²/|∇_t E|²)`.
 ///
-/// Source: Ward and Heckbert, "Irradiance Gradients", EGWR 1992. Differs: by [`JOINED`], and by the noise.
+/// Source: Ward and Heckbert, "Irradiance Gradients", EGWR 1992. Differs: by strata that are joined before they are compared, and by the noise.
 ///
 /// - `samples`: ring by ring.
 pub(super) fn translational(hemisphere: &Hemisphere, samples: &[HemisphereSample]) -> RgbGradient {
     let (rings, cells) = (hemisphere.rings(), hemisphere.cells());
-    let (along_theta, along_phi) = (runs(rings), runs(cells));
-    let cell_at = |t: usize, p: usize| Joined::new(along_theta[t], along_phi[p], cells, samples);
+    let strata = Strata::new(hemisphere, samples);
+    let (along_theta, along_phi) = (&strata.along_theta, &strata.along_phi);
     let sin_sq = |ring: u32| ring as f32 / rings as f32;
     let angle = |cell: f32| math::sin_cos(TAU * cell / cells as f32);
     let (mut gradient, mut noise_sq) = (RgbGradient::default(), 0.0);
@@ -80,10 +57,9 @@ pub(super) fn translational(hemisphere: &Hemisphere, samples: &[HemisphereSample
         gradient.add(along, (one.light + other.light * -1.0) * share);
         noise_sq += share * share * (one.variance + other.variance);
     };
-    let column = |p: usize| -> Vec<Joined> { (0..along_theta.len()).map(|t| cell_at(t, p)).collect() };
-    let mut before = column(along_phi.len() - 1);
     for (p, cell) in along_phi.iter().enumerate() {
-        let here = column(p);
+        let before = p.checked_sub(1).unwrap_or(along_phi.len() - 1);
+        let at = |t: usize| strata.cell(t, p);
         let width = TAU * (cell.end - cell.first) as f32 / cells as f32;
         let (sin_mid, cos_mid) = angle(0.5 * (cell.first + cell.end) as f32);
         let (sin_border, cos_border) = angle(cell.first as f32);
@@ -91,12 +67,16 @@ pub(super) fn translational(hemisphere: &Hemisphere, samples: &[HemisphereSample
             let (inner, outer) = (sin_sq(ring.first), sin_sq(ring.end));
             if t > 0 {
                 let weight = width * inner.sqrt() * (1.0 - inner);
-                compare(Vec3::new(cos_mid, sin_mid, 0.0), weight, &here[t], &here[t - 1]);
+                compare(Vec3::new(cos_mid, sin_mid, 0.0), weight, at(t), at(t - 1));
             }
             let weight = outer.sqrt() - inner.sqrt();
-            compare(Vec3::new(-sin_border, cos_border, 0.0), weight, &here[t], &before[t]);
+            compare(
+                Vec3::new(-sin_border, cos_border, 0.0),
+                weight,
+                at(t),
+                strata.cell(t, before),
+            );
         }
-        before = here;
     }
     let length_sq = gradient.mean().length_squared();
     let kept = if length_sq > noise_sq {
@@ -105,33 +85,4 @@ pub(super) fn translational(hemisphere: &Hemisphere, samples: &[HemisphereSample
         0.0
     };
     gradient.map(|channel| channel * kept)
-}
-
-/// Strata that are looked at as one.
-struct Joined {
-    /// Mean radiance.
-    light: Rgb,
-    /// Mean of one over the distance.
-    near: f32,
-    /// Of the mean of the channels of `light`.
-    variance: f32,
-}
-
-impl Joined {
-    fn new(ring: Run, cell: Run, cells: u32, samples: &[HemisphereSample]) -> Self {
-        let strata = || {
-            let row = |t: u32| &samples[(t * cells + cell.first) as usize..(t * cells + cell.end) as usize];
-            (ring.first..ring.end).flat_map(row)
-        };
-        let count = ((ring.end - ring.first) * (cell.end - cell.first)) as f32;
-        let light = strata().map(|sample| sample.radiance).sum::<Rgb>() * (1.0 / count);
-        let near = strata().map(|sample| sample.inverse_distance).sum::<f32>() / count;
-        let mean = light.mean();
-        let deviation = |sample: &HemisphereSample| (sample.radiance.mean() - mean) * (sample.radiance.mean() - mean);
-        Self {
-            light,
-            near,
-            variance: strata().map(deviation).sum::<f32>() / (count * (count - 1.0).max(1.0)),
-        }
-    }
 }

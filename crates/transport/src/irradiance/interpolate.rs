@@ -39,32 +39,8 @@ impl IrradianceCache {
     #[inline]
     #[must_use]
     pub fn interpolate(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> Option<Rgb> {
+        let min_weight = self.settings.read_weight();
         let records = self.octree.candidates(position).map(|row| &self.records[row as usize]);
-        self.mean(records, position, normal, self.settings.read_weight(), sees)
-    }
-
-    /// As [`IrradianceCache::interpolate`], between the few records of a subset that hold further than others.
-    #[must_use]
-    pub(super) fn interpolate_coarsely(
-        &self,
-        position: Vec3,
-        normal: Vec3,
-        sees: impl Fn(&IrradianceRecord) -> bool,
-    ) -> Option<Rgb> {
-        let records = self.coarse.candidates(position, &self.records);
-        self.mean(records, position, normal, self.coarse.min_weight, sees)
-    }
-
-    /// The weighted mean of records at a place.
-    #[inline]
-    fn mean<'a>(
-        &self,
-        records: impl Iterator<Item = &'a IrradianceRecord>,
-        position: Vec3,
-        normal: Vec3,
-        min_weight: f32,
-        sees: impl Fn(&IrradianceRecord) -> bool,
-    ) -> Option<Rgb> {
         let (mut sum, mut weights) = (Rgb::BLACK, 0.0);
         for record in records {
             let Some(error) = error_at(record, position, normal, min_weight) else {

@@ -16,11 +16,12 @@
 
 mod cache;
 mod clamp;
-mod coarse;
 mod gradient;
 mod hemisphere;
+mod hessian;
 mod interpolate;
 mod reflect;
+mod strata;
 mod summary;
 #[cfg(test)]
 mod tests;
@@ -31,9 +32,28 @@ use std::array;
 
 pub use cache::{CacheSettings, IrradianceCache};
 pub use hemisphere::{Hemisphere, HemisphereSample, RecordRays, Site};
-pub(crate) use reflect::reflect_coarsely;
-pub use reflect::{CacheAnswer, find_sites, reflect_irradiance};
+pub use reflect::{CacheAnswer, find_deep_sites, find_sites, reflect_irradiance};
 pub use summary::{Spacing, summarize};
+
+/// How the distance is found within which a record holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorMetric {
+    /// By how fast the gradient of the light changes.
+    OcclusionHessian,
+    /// By how far what the rays met is away.
+    HarmonicMean,
+}
+
+impl ErrorMetric {
+    /// How many times as far as the nearest thing a range may be, and how much faster than the distance it may grow from record to
+    /// record: ranges by the harmonic mean are distances of things; those by the Hessian reach half as far as a thing, at 1/a = 10.
+    pub(super) fn ranges_per_distance(self) -> f32 {
+        match self {
+            Self::OcclusionHessian => 5.0,
+            Self::HarmonicMean => 1.0,
+        }
+    }
+}
 
 /// A gradient of irradiance, channel by channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

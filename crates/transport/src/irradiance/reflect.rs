@@ -5,12 +5,15 @@ use crate::path_class::Methods;
 use crate::scene::Scene;
 use crate::vertex::Vertex;
 use glam::Vec3;
-use radiometry::{Rgb, StageKey};
-use spatial::Ray;
+use radiometry::{Frame, Rgb, StageKey, warp};
+use spatial::{Ray, spawn_origin};
 use std::f32::consts::FRAC_1_PI;
 
 /// Key of the random numbers of reflectances.
 const REFLECT_STAGE: StageKey = StageKey::new("irradiance_cache/reflectance");
+
+/// Key of those of rays to deep places.
+const DEEP_STAGE: StageKey = StageKey::new("irradiance_cache/deep");
 
 /// D lobes with a smaller GGX width than this show what is around in too much detail for irradiance to tell; they are traced.
 const SHARPEST_ALPHA: f32 = 0.4;
@@ -53,43 +56,43 @@ pub fn reflect_irradiance(
     time: f32,
     vertex: &Vertex<'_>,
 ) -> CacheAnswer {
-    let interpolate =
-        |position, normal, sees: &dyn Fn(&IrradianceRecord) -> bool| cache.interpolate(position, normal, sees);
-    reflect_by(scene, path, time, vertex, interpolate)
-}
-
-/// As [`reflect_irradiance`], from fewer records that hold further: good enough one reflection away.
-pub(crate) fn reflect_coarsely(
-    scene: &Scene,
-    cache: &IrradianceCache,
-    path: &Path,
-    time: f32,
-    vertex: &Vertex<'_>,
-) -> CacheAnswer {
-    reflect_by(scene, path, time, vertex, |position, normal, sees| {
-        cache.interpolate_coarsely(position, normal, sees)
-    })
-}
-
-/// Reflects the irradiance that is found at a vertex.
-#[inline]
-fn reflect_by(
-    scene: &Scene,
-    path: &Path,
-    time: f32,
-    vertex: &Vertex<'_>,
-    interpolate: impl FnOnce(Vec3, Vec3, &dyn Fn(&IrradianceRecord) -> bool) -> Option<Rgb>,
-) -> CacheAnswer {
     if !is_suited(scene, vertex, &path.medium) {
         return CacheAnswer::Unsuited;
     }
     let (position, normal) = (vertex.point.p, vertex.facing_shading_normal());
     let sees = |record: &IrradianceRecord| sees(scene, position, normal, record, time);
-    let Some(irradiance) = interpolate(position, normal, &sees) else {
+    let Some(irradiance) = cache.interpolate(position, normal, sees) else {
         return CacheAnswer::Missing;
     };
     let u = path.stream.split(REFLECT_STAGE, 1, 0).draw_2d(path.depth, 0);
     CacheAnswer::Light(path.throughput * vertex.diffuse_reflectance(u) * irradiance * FRAC_1_PI)
+}
+
+/// Follows a camera path to where the eye asks the cache, and one ray from each such place on to where it would ask in turn:
+/// E S* D S* D. Such places are where rays of records end.
+///
+/// As [`find_sites`] otherwise.
+pub fn find_deep_sites(scene: &Scene, methods: &Methods, path: Path, ray: Ray, pixel_size: f32, sites: &mut Vec<Site>) {
+    let mut first = Vec::new();
+    find_sites(scene, methods, path, ray, pixel_size, &mut first);
+    for (number, site) in (0..).zip(&first) {
+        let stream = path.stream.split(DEEP_STAGE, first.len() as u32, number);
+        let local = warp::sample_cosine_hemisphere(stream.draw_2d(0, 0));
+        let wi = Frame::from_normal(site.normal)
+            .world_from_local(local)
+            .normalize_or(site.normal);
+        let next = Ray {
+            time: ray.time,
+            ..Ray::new(spawn_origin(site.position, site.error, site.geometric, wi), wi)
+        };
+        let path = Path {
+            medium: site.medium,
+            ..Path::from_eye(0, stream)
+        };
+        if site.geometric.dot(wi) > 0.0 {
+            find_sites(scene, methods, path, next, pixel_size, sites);
+        }
+    }
 }
 
 /// True when nothing stands between a place and a record, a little above the surface.

@@ -1,7 +1,8 @@
 use super::gradient::{rotational, translational};
+use super::hessian::curvature;
 use super::{
-    CacheSettings, Hemisphere, HemisphereSample, IrradianceCache, IrradianceRecord, RgbGradient, Site, Spacing,
-    summarize,
+    CacheSettings, ErrorMetric, Hemisphere, HemisphereSample, IrradianceCache, IrradianceRecord, RgbGradient, Site,
+    Spacing, summarize,
 };
 use crate::medium::PathMedium;
 use glam::{Vec2, Vec3};
@@ -98,6 +99,43 @@ fn gradients_are_the_differences_of_irradiance() {
 }
 
 #[test]
+fn curvature_is_the_second_difference_of_irradiance() {
+    for origin in [
+        Vec3::new(0.1, 0.2, 0.0),
+        Vec3::new(1.5, 0.2, 0.0),
+        Vec3::new(-1.0, -1.0, 0.5),
+        Vec3::new(0.3, 0.7, 0.5),
+    ] {
+        let step = 0.1;
+        let at = |x: f32, y: f32| f64::from(irradiance(origin + Vec3::new(x, y, 0.0) * step, Vec3::Z));
+        let twice = |ahead: f64, behind: f64| (ahead + behind - 2.0 * at(0.0, 0.0)) / f64::from(step * step);
+        let (xx, yy) = (twice(at(1.0, 0.0), at(-1.0, 0.0)), twice(at(0.0, 1.0), at(0.0, -1.0)));
+        let crossed = at(1.0, 1.0) + at(-1.0, -1.0) - at(1.0, -1.0) - at(-1.0, 1.0);
+        let xy = crossed / (4.0 * f64::from(step * step));
+        let expected = (0.5 * (xx * xx + 2.0 * xy * xy + yy * yy)).sqrt();
+        for rays in [1000, 40_000] {
+            let hemisphere = Hemisphere::of_rays(rays);
+            let found = f64::from(curvature(&hemisphere, &look(&hemisphere, origin, Vec3::Z)));
+            // It is the root of a root that counts: 60 % off are 13 % of a radius.
+            let off = found / expected;
+            assert!(
+                (0.6..1.6).contains(&off),
+                "{origin}, {rays} rays: {found}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_room_of_even_light_has_no_curvature() {
+    let hemisphere = Hemisphere::of_rays(1000);
+    let mut samples = look(&hemisphere, Vec3::new(0.4, -1.0, 0.3), Vec3::Z);
+    samples.iter_mut().for_each(|sample| sample.radiance = Rgb::splat(2.0));
+    let found = curvature(&hemisphere, &samples);
+    assert!(found < 1e-3, "{found}");
+}
+
+#[test]
 fn noise_alone_makes_no_gradient() {
     let hemisphere = Hemisphere::of_rays(1000);
     let draw = |ray: u32| SampleStream::new(11, StageKey::new("noise"), 0, ray).draw_1d(0, 0);
@@ -116,6 +154,7 @@ const SETTINGS: CacheSettings = CacheSettings {
     min_weight: 10.0,
     cell_records: 8,
     gradients: true,
+    metric: ErrorMetric::HarmonicMean,
 };
 
 fn record(position: Vec3, range: f32, irradiance: f32) -> IrradianceRecord {
@@ -246,7 +285,6 @@ fn a_summary_keeps_its_range_in_bounds() {
     let spacing = Spacing {
         min_pixels: 1.5,
         max_pixels: 40.0,
-        min_weight: 10.0,
         most: 7.0,
     };
     let of = |inverse_distance: f32, radiance: f32| {
@@ -258,8 +296,8 @@ fn a_summary_keeps_its_range_in_bounds() {
             &hemisphere,
             &vec![sample; hemisphere.rays() as usize],
             &site,
+            &SETTINGS,
             &spacing,
-            true,
         )
     };
     let room = of(0.5, 1.0).expect("sound");
