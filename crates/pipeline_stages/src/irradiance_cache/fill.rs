@@ -39,9 +39,23 @@ pub(super) struct CacheFill {
     pub(super) sampled: Vec<IrradianceRecord>,
     /// Number of the next record.
     pub(super) next_number: u32,
+    /// Number of the first record that is made here; those before it come from a file.
+    pub(super) first_number: u32,
 }
 
 impl CacheFill {
+    /// Goes on after records that there are already.
+    ///
+    /// - `is_complete`: whether none is missing.
+    pub(super) fn after(records: u32, is_complete: bool) -> Self {
+        Self {
+            level: if is_complete { STEPS.len() } else { 0 },
+            next_number: records,
+            first_number: records,
+            ..Self::default()
+        }
+    }
+
     /// True when nothing is missing at any level.
     pub(super) fn is_over(&self) -> bool {
         self.level >= STEPS.len() && self.missing.is_empty()
@@ -56,7 +70,8 @@ pub(super) fn generate_rays(
     progress: Res<Progress>,
 ) {
     let fill = &mut *fill;
-    if fill.level == 0 && fill.next_cell == 0 && fill.generation == 0 && fill.next_number == 0 {
+    let is_first = fill.level == 0 && fill.next_cell == 0 && fill.next_number == fill.first_number;
+    if is_first && fill.generation == 0 {
         progress.start("records", "levels", STEPS.len() as u64);
     }
     if !fill.missing.is_empty() || fill.is_over() {

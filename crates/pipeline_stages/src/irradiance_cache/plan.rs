@@ -69,6 +69,16 @@ pub(super) fn plan_cache(
         );
         findings.push_at(place, Diagnostic::error("out-of-range", message));
     }
+    if !is_chosen && (clock.records_only || report.request().records.is_some()) {
+        let prim = &report.scene().prims[settings.render_prim as usize].path;
+        let finding = Diagnostic::error(
+            "no-records",
+            "this scene has no records: `LightTransport.indirect` is not `IrradianceCache`",
+        )
+        .note(format!("add `--set {prim}.LightTransport.indirect=IrradianceCache`"));
+        let place = field_place(report.scene(), settings.render_prim, "LightTransport", &["indirect"]);
+        findings.push_at(place, finding);
+    }
     report.file(findings);
     if !is_chosen {
         return;

@@ -1,7 +1,10 @@
 use super::IrradianceRecord;
 use super::clamp::Neighbours;
 use super::coarse::Coarse;
+use super::interpolate::error_at;
+use glam::Vec3;
 use spatial::{Bounds, RecordOctree, RecordOctreeError};
+use std::f32::consts::FRAC_1_PI;
 
 /// How records are kept and read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +60,29 @@ impl IrradianceCache {
         }
     }
 
+    /// A cache of records that another has kept, by number. Their ranges are what neighbours have left, and stay so until others
+    /// are inserted.
+    ///
+    /// - `bounds`: of the scene.
+    ///
+    /// # Errors
+    /// The first record that [`IrradianceCache::accepts`] refuses.
+    pub fn restore(
+        settings: CacheSettings,
+        bounds: &Bounds,
+        records: Vec<IrradianceRecord>,
+    ) -> Result<Self, RecordOctreeError> {
+        let mut cache = Self::new(settings, bounds);
+        for record in &records {
+            cache.accepts(record)?;
+        }
+        cache.records = records;
+        cache.neighbours.add(&cache.records)?;
+        cache.coarse.insert(&cache.records, 0)?;
+        cache.rebuild(bounds)?;
+        Ok(cache)
+    }
+
     /// Whether a record can be kept: its place is in the scene and its numbers are finite.
     ///
     /// # Errors
@@ -105,6 +131,23 @@ impl IrradianceCache {
     #[must_use]
     pub fn records(&self) -> &[IrradianceRecord] {
         &self.records
+    }
+
+    /// Estimates how many records there are for each square metre around a place of a surface: `Σ_j 1/(π R_j²)` over the
+    /// records that are read there, R_j the distance within which they are.
+    ///
+    /// Each record is spread evenly over the disc that it tells of, so that over a flat surface the estimate adds up to the
+    /// number of records. Source: sample-point kernels (Breiman, Meisel and Purcell, 1977).
+    ///
+    /// - `normal`: unit, on the side that light comes from.
+    /// - returns m⁻², 0 where no record holds. What stands between is not asked.
+    #[must_use]
+    pub fn record_density(&self, position: Vec3, normal: Vec3) -> f32 {
+        let records = self.octree.candidates(position).map(|row| &self.records[row as usize]);
+        let holds =
+            |record: &&IrradianceRecord| error_at(record, position, normal, self.settings.read_weight()).is_some();
+        let density = |record: &IrradianceRecord| FRAC_1_PI / self.reach(record).powi(2);
+        records.filter(holds).map(density).filter(|d| d.is_finite()).sum()
     }
 
     /// Memory in bytes, about.
