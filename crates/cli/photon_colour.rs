@@ -7,6 +7,9 @@ use glam::Vec3;
 use pipeline_data::{Photon, PhotonsOfKind};
 use transport::MapKind;
 
+/// Of the photons of a map by flux, the one at this place is shown at full brightness.
+const WHITE_SHARE: f64 = 0.99;
+
 /// Display colours of photons.
 pub(crate) struct Colours {
     by: PhotonColour,
@@ -18,7 +21,8 @@ impl Colours {
     pub(crate) fn new(by: PhotonColour, maps: &[PhotonsOfKind]) -> Self {
         let mut white_of = [1.0; MapKind::COUNT];
         for (kind, photons) in maps {
-            white_of[*kind as usize] = white(photons.iter().map(|photon| photon.flux.max_element()).collect());
+            let fluxes = photons.iter().map(|photon| photon.flux.max_element());
+            white_of[*kind as usize] = white(fluxes.collect(), WHITE_SHARE);
         }
         Self { by, white: white_of }
     }

@@ -1,17 +1,14 @@
 //! From quantities to the colours of points.
 
-/// Of all values the one at this place is shown at full brightness; larger ones are as bright.
-const WHITE_SHARE: f64 = 0.99;
-
 /// The value that stands at a share of all of them in order; none of none.
 pub(crate) fn at_share(mut values: Vec<f32>, share: f64) -> Option<f32> {
     let place = (values.len() as f64 * share) as usize;
     (place < values.len()).then(|| *values.select_nth_unstable_by(place, f32::total_cmp).1)
 }
 
-/// The value that is shown at full brightness, above 0.
-pub(crate) fn white(values: Vec<f32>) -> f32 {
-    at_share(values, WHITE_SHARE).map_or(1.0, |value| value.max(f32::MIN_POSITIVE))
+/// The value that is shown at full brightness, above 0: the one at a share of all of them. Larger ones are as bright.
+pub(crate) fn white(values: Vec<f32>, share: f64) -> f32 {
+    at_share(values, share).map_or(1.0, |value| value.max(f32::MIN_POSITIVE))
 }
 
 /// A linear quantity as a display colour, sRGB in [0, 1].
@@ -41,8 +38,8 @@ mod tests {
     fn few_bright_values_do_not_darken_the_rest() {
         let mut values = vec![2.0; 1000];
         values[17] = 1e9;
-        assert_eq!(white(values), 2.0);
-        assert_eq!(white(Vec::new()), 1.0);
+        assert_eq!(white(values, 0.99), 2.0);
+        assert_eq!(white(Vec::new(), 0.99), 1.0);
         assert_eq!(shown([0.5, 2.0, 1e9], 2.0), [0.5, 1.0, 1.0]);
     }
 

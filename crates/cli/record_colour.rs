@@ -6,6 +6,10 @@ use crate::point_picture::Point;
 use pipeline_data::IrradianceRecord;
 use radiometry::math;
 
+/// Of the records by irradiance, the one at this place is shown at full brightness: lower than for photons, since each is
+/// there to be seen, and the brightest lie in few places.
+const WHITE_SHARE: f64 = 0.9;
+
 /// Shares of the records, by range, at the ends of the ramp.
 const ENDS: [f64; 2] = [0.01, 0.99];
 
@@ -25,7 +29,7 @@ impl Colours {
         let ranges: Vec<f32> = records.iter().map(log_range).collect();
         Self {
             by,
-            white: white(irradiance.collect()),
+            white: white(irradiance.collect(), WHITE_SHARE),
             ends: ENDS.map(|share| at_share(ranges.clone(), share).unwrap_or(0.0)),
             count: records.len() as f32,
         }

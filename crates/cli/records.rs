@@ -59,8 +59,8 @@ fn write(world: &World, path: &Path, records: &[IrradianceRecord], colours: &Col
             let records: Vec<_> = records.iter().map(|entity| entity.record).collect();
             atomic_write(path, |file| write_records(file, keys, origin, &records))
         }
-        // Without keys records cannot be kept, which was refused before any was made.
-        _ => {
+        // Without keys records change during a render; to keep them was refused before any was made.
+        (Some(CacheFormat::Png | CacheFormat::Own) | None, _) => {
             let points: Vec<Point> = records.iter().map(|entity| colours.point(entity)).collect();
             point_picture::write(path, world, &points)
         }

@@ -57,7 +57,10 @@ pub(super) fn maintain_octree(
         }
     }
     if fill.is_over() {
-        result = result.and_then(|()| cache.0.rebuild(&scene.0.rays.bounds()));
+        // Records of a file alone are in an octree of their last ranges already.
+        if fill.next_number > fill.first_number {
+            result = result.and_then(|()| cache.0.rebuild(&scene.0.rays.bounds()));
+        }
         commands.remove_resource::<CacheFill>();
         clock.records_pending -= 1;
     }

@@ -2,8 +2,7 @@
 //!
 //! Scene: `"/Render": Def(LightTransport: (indirect: IrradianceCache), IrradianceCache: (rays: 1000))`
 //! Sets: `PrepareStages` (`plan_cache`, `reload_records`), `DeriveFromMaps` (`renew_records`), all of `CachePass` (`generate_rays`,
-//! `find_sites`, `choose_sites`, `sample_records`, `insert_records`, `maintain_octree`), `LookUp` (`look_up_irradiance`),
-//! `Shade` (`measure_record_density`).
+//! `find_sites`, `choose_sites`, `sample_records`, `insert_records`, `maintain_octree`), `LookUp` (`look_up_irradiance`).
 //! Reads the transport scene, the settings, the camera, and photon maps where `incoming` says so. Writes entities with
 //! [`IrradianceRecord`](pipeline_data::IrradianceRecord), the cache over them, their keys, contributions, and the film layer
 //! `record_density`: records of each square metre around what is seen first, m⁻² ([`RecordDensity`]).
@@ -47,9 +46,9 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use fill::CacheFill;
 use pipeline_core::{
-    Bounce, BounceSystems, CachePass, CacheSystems, PhotonPass, PhotonSystems, Prepare, PrepareSystems, RenderClock,
+    Bounce, BounceSystems, CachePass, CacheSystems, PhotonPass, PhotonSystems, Prepare, PrepareSystems,
 };
-use pipeline_data::{BuiltIrradianceCache, Contributions, DebugLayers, PhotonDemand};
+use pipeline_data::{Contributions, DebugLayers, PhotonDemand};
 use plan::CachePlan;
 use scene_format::Range;
 
@@ -164,14 +163,6 @@ impl Plugin for IrradianceCachePlugin {
                 .in_set(BounceSystems::LookUp)
                 .in_set(IrradianceCacheSystems)
                 .run_if(resource_exists::<CachePlan>),
-        )
-        .add_systems(
-            Bounce,
-            density::measure_record_density
-                .in_set(BounceSystems::Shade)
-                .in_set(IrradianceCacheSystems)
-                .run_if(resource_exists::<BuiltIrradianceCache>)
-                .run_if(|clock: Res<RenderClock>| clock.bounce == 0),
         );
     }
 }

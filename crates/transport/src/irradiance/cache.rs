@@ -1,10 +1,7 @@
 use super::IrradianceRecord;
 use super::clamp::Neighbours;
 use super::coarse::Coarse;
-use super::interpolate::error_at;
-use glam::Vec3;
 use spatial::{Bounds, RecordOctree, RecordOctreeError};
-use std::f32::consts::FRAC_1_PI;
 
 /// How records are kept and read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,23 +128,6 @@ impl IrradianceCache {
     #[must_use]
     pub fn records(&self) -> &[IrradianceRecord] {
         &self.records
-    }
-
-    /// Estimates how many records there are for each square metre around a place of a surface: `Σ_j 1/(π R_j²)` over the
-    /// records that are read there, R_j the distance within which they are.
-    ///
-    /// Each record is spread evenly over the disc that it tells of, so that over a flat surface the estimate adds up to the
-    /// number of records. Source: sample-point kernels (Breiman, Meisel and Purcell, 1977).
-    ///
-    /// - `normal`: unit, on the side that light comes from.
-    /// - returns m⁻², 0 where no record holds. What stands between is not asked.
-    #[must_use]
-    pub fn record_density(&self, position: Vec3, normal: Vec3) -> f32 {
-        let records = self.octree.candidates(position).map(|row| &self.records[row as usize]);
-        let holds =
-            |record: &&IrradianceRecord| error_at(record, position, normal, self.settings.read_weight()).is_some();
-        let density = |record: &IrradianceRecord| FRAC_1_PI / self.reach(record).powi(2);
-        records.filter(holds).map(density).filter(|d| d.is_finite()).sum()
     }
 
     /// Memory in bytes, about.

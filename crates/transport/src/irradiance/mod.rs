@@ -31,6 +31,7 @@ use std::array;
 
 pub use cache::{CacheSettings, IrradianceCache};
 pub use hemisphere::{Hemisphere, HemisphereSample, RecordRays, Site};
+pub use interpolate::Interpolated;
 pub(crate) use reflect::reflect_coarsely;
 pub use reflect::{CacheAnswer, find_sites, reflect_irradiance};
 pub use summary::{Spacing, summarize};

@@ -1,4 +1,4 @@
-use super::{IrradianceCache, IrradianceRecord, Site};
+use super::{Interpolated, IrradianceCache, IrradianceRecord, Site};
 use crate::medium::PathMedium;
 use crate::path::{Path, arrive, scatter_at};
 use crate::path_class::Methods;
@@ -21,8 +21,13 @@ const LIFT: f32 = 0.05;
 /// What the cache knows of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CacheAnswer {
-    /// Reflected radiance of indirect light in W·m⁻²·sr⁻¹, weighted with what the path carries.
-    Light(Rgb),
+    /// Some records do.
+    Light {
+        /// Reflected radiance of indirect light in W·m⁻²·sr⁻¹, weighted with what the path carries.
+        radiance: Rgb,
+        /// Records of each square metre around, as in [`Interpolated`].
+        record_density: f32,
+    },
     /// No record holds there.
     Missing,
     /// Irradiance does not tell what such a surface reflects.
@@ -78,18 +83,21 @@ fn reflect_by(
     path: &Path,
     time: f32,
     vertex: &Vertex<'_>,
-    interpolate: impl FnOnce(Vec3, Vec3, &dyn Fn(&IrradianceRecord) -> bool) -> Option<Rgb>,
+    interpolate: impl FnOnce(Vec3, Vec3, &dyn Fn(&IrradianceRecord) -> bool) -> Option<Interpolated>,
 ) -> CacheAnswer {
     if !is_suited(scene, vertex, &path.medium) {
         return CacheAnswer::Unsuited;
     }
     let (position, normal) = (vertex.point.p, vertex.facing_shading_normal());
     let sees = |record: &IrradianceRecord| sees(scene, position, normal, record, time);
-    let Some(irradiance) = interpolate(position, normal, &sees) else {
+    let Some(found) = interpolate(position, normal, &sees) else {
         return CacheAnswer::Missing;
     };
     let u = path.stream.split(REFLECT_STAGE, 1, 0).draw_2d(path.depth, 0);
-    CacheAnswer::Light(path.throughput * vertex.diffuse_reflectance(u) * irradiance * FRAC_1_PI)
+    CacheAnswer::Light {
+        radiance: path.throughput * vertex.diffuse_reflectance(u) * found.irradiance * FRAC_1_PI,
+        record_density: found.record_density,
+    }
 }
 
 /// True when nothing stands between a place and a record, a little above the surface.
