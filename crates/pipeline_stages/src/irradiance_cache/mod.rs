@@ -20,7 +20,8 @@
 //!
 //! Records can be kept in a file (`pipeline records`, `run --records`). Two keys say what they are worth elsewhere: one of their
 //! light, which must agree, and one of the view. For the same view none is missing, and the image has the same bits; for another
-//! they are inserted first, and the filling adds what it lacks. Spacings count in pixels of the view that a record was made for.
+//! they are inserted first, and the filling adds what it lacks. Spacings count in pixels of the view that a record was made for,
+//! and photons that it read were aimed at what that view sees.
 //!
 //! What the cache is not asked, and what no record tells of, is traced: glossy D lobes, normal maps, things that move,
 //! and places that only a lens or a moment shows. The cache is filled through a pinhole, at random moments.

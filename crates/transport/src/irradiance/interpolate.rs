@@ -17,7 +17,7 @@ const LEAST_ERROR: f32 = 0.01;
 pub struct Interpolated {
     /// E of indirect light, W·m⁻², no channel negative.
     pub irradiance: Rgb,
-    /// How many records there are on each square metre around, m⁻²: `Σ_j 1/(π R_j²)` over those that count, R_j the distance
+    /// How many records there are on each square metre around, m⁻²: `Σ_j 1/(π R_j²)` over those that count, `R_j` the distance
     /// within which they do. Each is spread evenly over the disc that it tells of, so over a flat surface it adds up to their
     /// number. Source: kernels by sample point (Breiman, Meisel and Purcell, 1977).
     pub record_density: f32,
