@@ -302,7 +302,8 @@ mod tests {
 
     #[test]
     fn records_that_cannot_be_are_refused() {
-        let spoilers: [(&str, fn(&mut IrradianceRecord)); 9] = [
+        type Spoil = fn(&mut IrradianceRecord);
+        let spoilers: [(&str, Spoil); 9] = [
             ("position", |record| record.position.y = f32::NAN),
             ("normal", |record| record.normal = Vec3::splat(1.0)),
             ("normal", |record| record.normal.x = f32::NAN),
