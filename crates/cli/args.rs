@@ -35,6 +35,8 @@ pub(crate) enum Command {
     Profile(ProfileArgs),
     /// Draw the photons of a scene as points, or write them to a file
     Photons(PhotonsArgs),
+    /// Draw the irradiance records of a scene as points, or write them to a file
+    Records(RecordsArgs),
     /// Measure how far an image is from a reference
     Compare(CompareArgs),
     /// Look for bias: trace random parts of a scene, and test its own methods against them
@@ -111,6 +113,10 @@ pub(crate) struct RenderArgs {
     /// Take photons from a file that `pipeline photons` wrote, instead of tracing them; changes no bit of the image
     #[arg(long, value_name = "FILE.photons")]
     pub(crate) photons: Option<PathBuf>,
+    /// Begin with irradiance records from a file that `pipeline records` wrote; where only the camera or the film differ, those
+    /// that are missing are added
+    #[arg(long, value_name = "FILE.records")]
+    pub(crate) records: Option<PathBuf>,
     /// Go on from where the same command was interrupted
     #[arg(long)]
     pub(crate) resume: bool,
@@ -203,13 +209,41 @@ pub(crate) struct PhotonsArgs {
     /// What the colour of a photon tells
     #[arg(long, value_name = "BY", value_enum, default_value_t = PhotonColour::Flux)]
     pub(crate) colour: PhotonColour,
+    #[command(flatten)]
+    pub(crate) draw: DrawArgs,
+}
+
+#[derive(Args, Debug)]
+#[command(
+    after_help = ".png draws the records over the scene; .ply is a point cloud for MeshLab or Blender; \
+                  .records is for `run --records`."
+)]
+pub(crate) struct RecordsArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// A file to write, .png, .ply or .records; may be given several times
+    #[arg(short, long = "output", value_name = "FILE", required = true, value_parser = parse::record_output)]
+    pub(crate) output: Vec<PathBuf>,
+    /// What the colour of a record tells
+    #[arg(long, value_name = "BY", value_enum, default_value_t = RecordColour::Irradiance)]
+    pub(crate) colour: RecordColour,
+    /// Begin with records from a file; where only the camera or the film differ, those that are missing are added
+    #[arg(long, value_name = "FILE.records")]
+    pub(crate) records: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) draw: DrawArgs,
+}
+
+/// How photons or records are made to be drawn.
+#[derive(Args, Debug)]
+pub(crate) struct DrawArgs {
     /// Pixels of the whole film, in place of the scene's
     #[arg(long, value_name = "WxH", value_parser = parse::resolution)]
     pub(crate) resolution: Option<[u32; 2]>,
     /// Draw a part only: first pixel, and the pixel after the last
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse::crop)]
     pub(crate) crop: Option<[u32; 4]>,
-    /// Threads to use; changes no bit of the photons [default: one for each processor]
+    /// Threads to use; changes no bit of what is made [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=parse::MAX_THREADS))]
     pub(crate) threads: Option<u16>,
     /// Seed of all random numbers, in place of the scene's
@@ -247,6 +281,17 @@ pub(crate) enum PhotonColour {
     Map,
     /// Events since the light
     Bounce,
+}
+
+/// What the colour of a record tells.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RecordColour {
+    /// Its irradiance
+    Irradiance,
+    /// How far it holds: yellow near, blue far
+    Range,
+    /// When it was made: the first yellow, the last blue
+    Number,
 }
 
 #[derive(Args, Debug)]

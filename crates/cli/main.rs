@@ -10,6 +10,7 @@ mod args;
 mod audit;
 mod audit_map;
 mod audit_text;
+mod cache_session;
 mod check;
 mod compare;
 mod compare_text;
@@ -22,12 +23,17 @@ mod number;
 mod outputs;
 mod parse;
 mod photon_colour;
-mod photon_picture;
 mod photon_ply;
 mod photons;
+mod point_cloud;
+mod point_colour;
+mod point_picture;
 mod profile;
 mod profiling;
 mod progress;
+mod record_colour;
+mod record_ply;
+mod records;
 mod run;
 mod schema;
 mod session;
@@ -49,6 +55,7 @@ fn main() -> ExitCode {
         Command::Stages(options) => stages::execute(&options),
         Command::Profile(options) => profile::execute(&options),
         Command::Photons(options) => photons::execute(&options),
+        Command::Records(options) => records::execute(&options),
         Command::Compare(options) => compare::execute(&options),
         Command::Audit(options) => audit::execute(&options),
     };

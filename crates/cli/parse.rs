@@ -38,27 +38,39 @@ impl Format {
 
 /// A file to write photons to.
 pub(crate) fn photon_output(text: &str) -> Result<PathBuf, String> {
-    match PhotonFormat::of(Path::new(text)) {
+    cache_output(text, "photons")
+}
+
+/// A file to write records to.
+pub(crate) fn record_output(text: &str) -> Result<PathBuf, String> {
+    cache_output(text, "records")
+}
+
+fn cache_output(text: &str, own: &str) -> Result<PathBuf, String> {
+    match CacheFormat::of(Path::new(text), own) {
         Some(_) => Ok(text.into()),
-        None => Err("the name must end in .png, .ply or .photons".into()),
+        None => Err(format!("the name must end in .png, .ply or .{own}")),
     }
 }
 
-/// A kind of file of photons.
+/// A kind of file of photons or of records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum PhotonFormat {
+pub(crate) enum CacheFormat {
     Png,
     Ply,
-    Photons,
+    /// The one that a render takes up again.
+    Own,
 }
 
-impl PhotonFormat {
+impl CacheFormat {
     /// The kind that the extension of a path asks for.
-    pub(crate) fn of(path: &Path) -> Option<Self> {
+    ///
+    /// - `own`: the extension of files that a render takes up again.
+    pub(crate) fn of(path: &Path, own: &str) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "png" => Some(Self::Png),
             "ply" => Some(Self::Ply),
-            "photons" => Some(Self::Photons),
+            extension if extension == own => Some(Self::Own),
             _ => None,
         }
     }
@@ -227,5 +239,7 @@ mod tests {
         for bad in ["a.jpg", "a", "", ".exr", "exr", "a.exr.gz"] {
             assert!(output(bad).is_err(), "{bad}");
         }
+        assert!(photon_output("a.photons").is_ok() && record_output("a.Records").is_ok());
+        assert!(photon_output("a.records").is_err() && record_output("a.photons").is_err());
     }
 }

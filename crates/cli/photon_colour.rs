@@ -1,10 +1,13 @@
 //! What colour a photon is shown in.
 
 use crate::args::PhotonColour;
+use crate::point_colour::{shown, white};
+use crate::point_picture::Point;
+use glam::Vec3;
 use pipeline_data::{Photon, PhotonsOfKind};
 use transport::MapKind;
 
-/// Of the photons of a map by flux, the one at this place is shown at full brightness; brighter ones are as bright.
+/// Of the photons of a map by flux, the one at this place is shown at full brightness.
 const WHITE_SHARE: f64 = 0.99;
 
 /// Display colours of photons.
@@ -16,25 +19,18 @@ pub(crate) struct Colours {
 
 impl Colours {
     pub(crate) fn new(by: PhotonColour, maps: &[PhotonsOfKind]) -> Self {
-        let mut white = [1.0; MapKind::COUNT];
+        let mut white_of = [1.0; MapKind::COUNT];
         for (kind, photons) in maps {
-            let mut fluxes: Vec<f32> = photons.iter().map(|photon| photon.flux.max_element()).collect();
-            let place = (fluxes.len() as f64 * WHITE_SHARE) as usize;
-            if place < fluxes.len() {
-                let (_, flux, _) = fluxes.select_nth_unstable_by(place, f32::total_cmp);
-                white[*kind as usize] = flux.max(f32::MIN_POSITIVE);
-            }
+            let fluxes = photons.iter().map(|photon| photon.flux.max_element());
+            white_of[*kind as usize] = white(fluxes.collect(), WHITE_SHARE);
         }
-        Self { by, white }
+        Self { by, white: white_of }
     }
 
     /// The colour of a photon, sRGB in [0, 1].
-    pub(crate) fn of(&self, kind: MapKind, photon: &Photon) -> [f32; 3] {
+    fn of(&self, kind: MapKind, photon: &Photon) -> [f32; 3] {
         match self.by {
-            PhotonColour::Flux => {
-                let white = self.white[kind as usize];
-                photon.flux.to_array().map(|flux| (flux / white).clamp(0.0, 1.0).sqrt())
-            }
+            PhotonColour::Flux => shown(photon.flux.to_array(), self.white[kind as usize]),
             PhotonColour::Map => match kind {
                 MapKind::Direct => [1.0, 0.85, 0.35],
                 MapKind::Caustic => [0.3, 0.75, 1.0],
@@ -54,8 +50,11 @@ impl Colours {
         }
     }
 
-    /// The same in 8 bits.
-    pub(crate) fn bytes_of(&self, kind: MapKind, photon: &Photon) -> [u8; 3] {
-        self.of(kind, photon).map(|value| (value * 255.0).round() as u8)
+    /// The photon as a point to draw.
+    pub(crate) fn point(&self, kind: MapKind, photon: &Photon) -> Point {
+        Point {
+            place: Vec3::from_array(photon.position),
+            colour: self.of(kind, photon),
+        }
     }
 }

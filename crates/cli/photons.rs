@@ -1,68 +1,44 @@
 //! `pipeline photons`: draws the photons of a scene, or writes them down.
 
-use crate::args::{PhotonColour, PhotonMapName, PhotonsArgs};
+use crate::args::{PhotonMapName, PhotonsArgs};
+use crate::cache_session::CacheSession;
 use crate::exit::Failure;
-use crate::interrupt;
-use crate::outputs;
-use crate::parse::PhotonFormat;
-use crate::photon_picture;
+use crate::parse::CacheFormat;
+use crate::photon_colour::Colours;
 use crate::photon_ply;
-use crate::progress::{Display, Watcher};
-use crate::session;
-use crate::terminal::say;
+use crate::point_picture::{self, Point};
 use bevy_app::App;
 use bevy_ecs::query::With;
-use film::atomic_write;
-use pipeline_core::{Cancellation, Outcome, Progress, RenderClock};
+use bevy_ecs::world::World;
+use film::{WriteError, atomic_write};
+use pipeline_core::RenderClock;
 use pipeline_data::{
-    CausticPhoton, ComposedScene, DirectPhoton, IndirectPhoton, Photon, PhotonMarker, PhotonsOfKind, RenderRequest,
-    RenderSettings, SceneOrigin, write_photons,
+    CausticPhoton, ComposedScene, DirectPhoton, IndirectPhoton, Photon, PhotonMarker, PhotonsOfKind, RenderSettings,
+    SceneOrigin, write_photons,
 };
 use pipeline_stages::photon_map::photon_key;
 use std::path::Path;
 use transport::{MapKind, MapKinds};
 
 pub(crate) fn execute(options: &PhotonsArgs) -> Result<(), Failure> {
-    outputs::check_writable(&options.output)?;
-    session::use_threads(options.threads)?;
+    let session = CacheSession {
+        scene: &options.scene,
+        draw: &options.draw,
+        output: &options.output,
+        clock: RenderClock {
+            photons_only: true,
+            ..RenderClock::default()
+        },
+    };
     let kinds = wanted_kinds(&options.map);
-    let mut app = session::new_app();
-    app.insert_resource(RenderRequest {
-        seed: options.seed,
-        resolution: options.resolution.map(Into::into),
-        crop: options.crop,
-        photon_maps: kinds,
-        ..session::scene_request(&options.scene)
-    })
-    .insert_resource(RenderClock {
-        photons_only: true,
-        ..RenderClock::default()
-    });
-    let display = Display::new(options.quiet);
-    interrupt::listen(app.world().resource::<Cancellation>(), &display)?;
-    let progress = app.world().resource::<Progress>().clone();
-    let watcher = Watcher::start(progress, display, None);
-    let outcome = pipeline_core::render(&mut app);
-    drop(watcher);
-    session::tell_warnings(&app);
-    match outcome {
-        Outcome::BadScene => return Err(session::bad_scene(&app)),
-        Outcome::Interrupted => return Err(Failure::interrupted()),
-        Outcome::Finished | Outcome::WriteFailed => {}
-    }
+    let mut app = session.make(|request| request.photon_maps = kinds)?;
     let maps = landed(&mut app, kinds);
-    if !options.quiet {
-        for (kind, photons) in &maps {
-            say(&format!("{} {} photons", photons.len(), kind.name()));
-        }
-    }
-    for path in &options.output {
-        write(&app, path, &maps, options.colour)?;
-        if !options.quiet {
-            say(&format!("wrote {}", path.display()));
-        }
-    }
-    Ok(())
+    let colours = Colours::new(options.colour, &maps);
+    let found: Vec<String> = maps
+        .iter()
+        .map(|(kind, photons)| format!("{} {} photons", photons.len(), kind.name()))
+        .collect();
+    session.write(&found, |path| write(app.world(), path, &maps, &colours))
 }
 
 /// The maps that were asked for; all where none was named.
@@ -89,16 +65,20 @@ fn landed(app: &mut App, kinds: MapKinds) -> Vec<PhotonsOfKind> {
     wanted.collect()
 }
 
-fn write(app: &App, path: &Path, maps: &[PhotonsOfKind], colour: PhotonColour) -> Result<(), Failure> {
-    let world = app.world();
+fn write(world: &World, path: &Path, maps: &[PhotonsOfKind], colours: &Colours) -> Result<(), WriteError> {
     let origin = *world.resource::<SceneOrigin>();
-    let written = match PhotonFormat::of(path) {
-        Some(PhotonFormat::Ply) => atomic_write(path, |file| photon_ply::write(file, maps, origin.0, colour)),
-        Some(PhotonFormat::Photons) => {
+    match CacheFormat::of(path, "photons") {
+        Some(CacheFormat::Ply) => atomic_write(path, |file| photon_ply::write(file, maps, origin.0, colours)),
+        Some(CacheFormat::Own) => {
             let key = photon_key(&world.resource::<ComposedScene>().0, world.resource::<RenderSettings>());
             atomic_write(path, |file| write_photons(file, &key, origin, maps))
         }
-        Some(PhotonFormat::Png) | None => photon_picture::write(path, world, maps, colour),
-    };
-    written.map_err(|error| Failure::failed(error.to_string()))
+        Some(CacheFormat::Png) | None => {
+            let of_map = |(kind, photons): &PhotonsOfKind| -> Vec<Point> {
+                photons.iter().map(|photon| colours.point(*kind, photon)).collect()
+            };
+            let points: Vec<Point> = maps.iter().flat_map(of_map).collect();
+            point_picture::write(path, world, &points)
+        }
+    }
 }

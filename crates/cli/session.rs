@@ -82,6 +82,7 @@ pub(crate) fn render_request(scene: &SceneArgs, render: &RenderArgs, outputs: Ve
         tile_size: render.tile_size,
         outputs,
         photons: render.photons.clone(),
+        records: render.records.clone(),
         resume: render.resume,
         strict: render.strict,
         ..scene_request(scene)

@@ -3,7 +3,7 @@
 use crate::terminal::say;
 use bevy_app::App;
 use pipeline_core::{Counters, RenderClock};
-use pipeline_data::{FilmSums, RenderSettings};
+use pipeline_data::{FilmSums, RenderRequest, RenderSettings};
 use pipeline_stages::image::EstimatedError;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -34,12 +34,27 @@ pub(crate) fn tell_result(app: &App, elapsed: Duration, written: &[PathBuf]) {
         Some(samples) => say(&format!("{samples} samples a pixel in {time}")),
         None => say(&format!("done in {time}")),
     }
+    if let Some(records) = reused_records(app) {
+        say(&records);
+    }
     if let Some(EstimatedError(error)) = app.world().get_resource() {
         say(&format!("estimated relative error {:.2} %", 100.0 * error));
     }
     for path in written {
         say(&format!("wrote {}", path.display()));
     }
+}
+
+/// How many irradiance records came from a file, and how many more were made; none where there was no file.
+pub(crate) fn reused_records(app: &App) -> Option<String> {
+    app.world().resource::<RenderRequest>().records.as_ref()?;
+    let counters = app.world().resource::<Counters>();
+    let count = |name: &str| counters.get(&format!("irradiance_cache/{name}"));
+    Some(format!(
+        "{} records reused, {} added",
+        count("reused"),
+        count("records")
+    ))
 }
 
 /// Samples a pixel, earlier runs of a resumed render included: of the pixel that has the fewest, and how many it wants.

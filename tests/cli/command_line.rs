@@ -20,6 +20,7 @@ fn help_goes_to_standard_output() {
       stages   List schedules, sets and systems in the order they run
       profile  Render a scene and print what every system cost
       photons  Draw the photons of a scene as points, or write them to a file
+      records  Draw the irradiance records of a scene as points, or write them to a file
       compare  Measure how far an image is from a reference
       audit    Look for bias: trace random parts of a scene, and test its own methods against them
       help     Print this message or the help of the given subcommand(s)
@@ -31,7 +32,7 @@ fn help_goes_to_standard_output() {
     Exit codes: 0 done, 1 render or I/O failed, 2 bad command line or bad scene, 130 interrupted (image written).
     ");
     for command in [
-        "run", "check", "flatten", "explain", "schema", "stages", "profile", "photons", "compare", "audit",
+        "run", "check", "flatten", "explain", "schema", "stages", "profile", "photons", "records", "compare", "audit",
     ] {
         let ran = Folder::new().succeed(&format!("{command} --help"));
         assert!(
@@ -53,6 +54,13 @@ fn mistakes_exit_with_2_and_say_what_is_expected() {
         ("run scene.ron --sample 3", "'--samples'"),
         ("run scene.ron -o image.jpg", "must end in .exr or .png"),
         ("run scene.ron -o image", "must end in .exr or .png"),
+        ("photons scene.ron -o a.exr", "must end in .png, .ply or .photons"),
+        ("records scene.ron -o a.exr", "must end in .png, .ply or .records"),
+        ("records scene.ron", "--output <FILE>"),
+        (
+            "records scene.ron -o a.png",
+            "add `--set /Render.LightTransport.indirect=IrradianceCache`",
+        ),
         ("run scene.ron --samples 0", "0 is not in 1.."),
         ("run scene.ron --samples many", "invalid digit"),
         ("run scene.ron --threads 0", "0 is not in 1..=1024"),

@@ -30,6 +30,8 @@ pub struct RenderClock {
     pub check_only: bool,
     /// Make the photons of the first pass, and render nothing.
     pub photons_only: bool,
+    /// Make the records of the first pass, and the photons that they may read, and render nothing.
+    pub records_only: bool,
     /// Refuse a scene that loading or preparing warns about.
     pub strict: bool,
 }
@@ -72,15 +74,21 @@ pub fn render(app: &mut App) -> Outcome {
     }
     let cancellation = world.resource::<Cancellation>().clone();
     run_photon_passes(world, &cancellation);
-    if world.resource::<RenderClock>().photons_only {
-        return if cancellation.is_requested() {
+    let made = || {
+        if cancellation.is_requested() {
             Outcome::Interrupted
         } else {
             Outcome::Finished
-        };
+        }
+    };
+    if world.resource::<RenderClock>().photons_only {
+        return made();
     }
     run_cache_passes(world, &cancellation);
     let clock = world.resource::<RenderClock>();
+    if clock.records_only {
+        return made();
+    }
     let (total, per_pass, limit) = (clock.waves_total, clock.waves_per_pass.max(1), clock.time_limit);
     let first_stop = clock.waves_done + per_pass;
     let progress = world.resource::<Progress>().clone();

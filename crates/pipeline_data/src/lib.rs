@@ -6,12 +6,15 @@
 //!
 //! It deliberately holds no formula: those are one layer down, in crates that know no ECS.
 
+mod checked_file;
+mod debug_layer;
 mod irradiance;
 mod mesh_store;
 mod patch;
 mod photon;
 mod photon_file;
 mod pixel_choice;
+mod record_file;
 mod request;
 mod scene;
 mod settings;
@@ -19,6 +22,8 @@ mod stream;
 mod texture_store;
 pub mod vocabulary;
 
+pub use checked_file::CheckedFileError;
+pub use debug_layer::{DebugLayer, DebugLayers, NumbersOf};
 pub use irradiance::{BuiltIrradianceCache, IrradianceRecord, RECORD_DEPTHS};
 pub use mesh_store::{ImportedMesh, MeshKey, MeshStore};
 pub use patch::{PatchDemand, RadiosityPatch, SolvedPatches};
@@ -27,6 +32,7 @@ pub use photon::{
 };
 pub use photon_file::{PhotonFileError, PhotonsOfKind, read_photons, write_photons};
 pub use pixel_choice::{ChosenBlocks, PixelChoice};
+pub use record_file::{RecordFileError, RecordKeys, RecordsByDepth, StoredRecords, read_records, write_records};
 pub use request::RenderRequest;
 pub use scene::{
     Acceleration, CameraFrame, ComposedScene, EnvironmentMaps, InstancePrims, PrimIndex, SceneOrigin, ShutterInterval,

@@ -15,16 +15,18 @@
 //!
 //! Photons stand in (path, bounce) order, their flux divided by the number emitted.
 
+use crate::checked_file::{CheckedFileError, CheckedReader, CheckedWriter, FileKind};
 use crate::{Photon, SceneOrigin};
 use radiometry::Rgb;
 use std::io::{self, Read, Write};
 use transport::MapKind;
 
-const MAGIC: [u8; 8] = *b"PIPEPHOT";
-const VERSION: u32 = 1;
-
-/// Photons that are read at a time: memory grows with what the file holds, not with what it claims.
-const CHUNK: u64 = 4096;
+const KIND: FileKind = FileKind {
+    magic: *b"PIPEPHOT",
+    version: 1,
+    noun: "photon",
+    command: "photons",
+};
 
 /// Bytes of a photon.
 const PHOTON_BYTES: usize = 40;
@@ -36,21 +38,9 @@ pub type PhotonsOfKind = (MapKind, Vec<Photon>);
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PhotonFileError {
-    /// The source could not be read.
-    #[error("it cannot be read: {0}; check the file and the disk")]
-    Io(#[source] io::Error),
-    /// The source ended early.
-    #[error("it is cut off; write it anew with `pipeline photons`")]
-    Truncated,
-    /// The first bytes are something else.
-    #[error("this is no photon file; write one with `pipeline photons SCENE -o FILE.photons`")]
-    NotPhotons,
-    /// It was written by another version of the program.
-    #[error("it has format {found}, this program reads {VERSION}; write it anew with `pipeline photons`")]
-    Version {
-        /// The format of the file.
-        found: u32,
-    },
+    /// It is no whole file of photons.
+    #[error(transparent)]
+    File(#[from] CheckedFileError),
     /// It belongs to another scene or other settings.
     #[error(
         "its photons belong to another scene, seed or resolution, or to other settings; write it anew with `pipeline photons` and the same options"
@@ -69,30 +59,11 @@ pub enum PhotonFileError {
         /// Its place in the map.
         row: u64,
     },
-    /// The checksum is wrong.
-    #[error("it is damaged: its checksum is wrong; write it anew with `pipeline photons`")]
-    Damaged,
 }
 
 impl From<io::Error> for PhotonFileError {
     fn from(error: io::Error) -> Self {
-        match error.kind() {
-            io::ErrorKind::UnexpectedEof => Self::Truncated,
-            _ => Self::Io(error),
-        }
-    }
-}
-
-/// FNV-1a, 64 bits.
-struct Checksum(u64);
-
-impl Checksum {
-    const NEW: Self = Self(0xcbf2_9ce4_8422_2325);
-
-    fn update(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
+        Self::File(CheckedFileError::Io(error))
     }
 }
 
@@ -108,27 +79,20 @@ pub fn write_photons(
     origin: SceneOrigin,
     maps: &[PhotonsOfKind],
 ) -> io::Result<()> {
-    let mut checksum = Checksum::NEW;
-    let mut put = |bytes: &[u8]| {
-        checksum.update(bytes);
-        writer.write_all(bytes)
-    };
-    put(&MAGIC)?;
-    put(&VERSION.to_le_bytes())?;
-    put(key)?;
+    let mut file = CheckedWriter::begin(writer, &KIND)?;
+    file.put(key)?;
     for coordinate in origin.0.to_array() {
-        put(&coordinate.to_le_bytes())?;
+        file.put(&coordinate.to_le_bytes())?;
     }
-    put(&(maps.len() as u32).to_le_bytes())?;
+    file.put(&(maps.len() as u32).to_le_bytes())?;
     for (kind, photons) in maps {
-        put(&(*kind as u32).to_le_bytes())?;
-        put(&(photons.len() as u64).to_le_bytes())?;
+        file.put(&(*kind as u32).to_le_bytes())?;
+        file.put(&(photons.len() as u64).to_le_bytes())?;
         for photon in photons {
-            put(&bytes_of(photon))?;
+            file.put(&bytes_of(photon))?;
         }
     }
-    let value = checksum.0;
-    writer.write_all(&value.to_le_bytes())
+    file.end()
 }
 
 /// Reads photon maps that [`write_photons`] wrote.
@@ -138,81 +102,43 @@ pub fn write_photons(
 /// # Errors
 /// A [`PhotonFileError`] that says what is wrong. No photon of a bad file gets through.
 pub fn read_photons(reader: &mut impl Read, key: &[u8; 32]) -> Result<Vec<PhotonsOfKind>, PhotonFileError> {
-    let mut source = Source {
-        reader,
-        checksum: Checksum::NEW,
-    };
-    if source.take::<8>()? != MAGIC {
-        return Err(PhotonFileError::NotPhotons);
-    }
-    let found = u32::from_le_bytes(source.take()?);
-    if found != VERSION {
-        return Err(PhotonFileError::Version { found });
-    }
-    if source.take::<32>()? != *key {
+    let mut file = CheckedReader::begin(reader, KIND)?;
+    if file.take::<32>()? != *key {
         return Err(PhotonFileError::Key);
     }
     // The key covers the geometry, and so the origin; it stands there for other programs.
-    source.take::<24>()?;
-    let count = u32::from_le_bytes(source.take()?);
+    file.take::<24>()?;
+    let count = u32::from_le_bytes(file.take()?);
     if count as usize > MapKind::COUNT {
         return Err(PhotonFileError::Kind);
     }
     let mut maps: Vec<PhotonsOfKind> = Vec::new();
     for _ in 0..count {
-        let number = u32::from_le_bytes(source.take()?);
+        let number = u32::from_le_bytes(file.take()?);
         let kind = MapKind::ALL.into_iter().find(|kind| *kind as u32 == number);
         let kind = kind.ok_or(PhotonFileError::Kind)?;
         if maps.iter().any(|(known, _)| *known == kind) {
             return Err(PhotonFileError::Kind);
         }
-        let photons = source.photons(kind)?;
+        let photons = file.rows(|bytes, row| good_photon(bytes, kind, row))?;
         maps.push((kind, photons));
     }
-    let expected = source.checksum.0;
-    if u64::from_le_bytes(source.take()?) == expected {
-        Ok(maps)
-    } else {
-        Err(PhotonFileError::Damaged)
-    }
+    file.end()?;
+    Ok(maps)
 }
 
-/// A reader that keeps the checksum of what it has read.
-struct Source<'r, R> {
-    reader: &'r mut R,
-    checksum: Checksum,
-}
-
-impl<R: Read> Source<'_, R> {
-    fn take<const N: usize>(&mut self) -> Result<[u8; N], PhotonFileError> {
-        let mut bytes = [0; N];
-        self.reader.read_exact(&mut bytes)?;
-        self.checksum.update(&bytes);
-        Ok(bytes)
-    }
-
-    fn photons(&mut self, kind: MapKind) -> Result<Vec<Photon>, PhotonFileError> {
-        let count = u64::from_le_bytes(self.take()?);
-        let mut photons = Vec::new();
-        for row in 0..count {
-            if row.is_multiple_of(CHUNK) {
-                photons.reserve(CHUNK.min(count - row) as usize);
-            }
-            let photon = photon_of(&self.take()?);
-            let is_good = photon.position.iter().all(|value| value.is_finite())
-                && photon
-                    .flux
-                    .to_array()
-                    .iter()
-                    .all(|value| value.is_finite() && *value >= 0.0);
-            if !is_good {
-                let kind = kind.name();
-                return Err(PhotonFileError::BadPhoton { kind, row });
-            }
-            photons.push(photon);
-        }
-        Ok(photons)
-    }
+fn good_photon(bytes: &[u8; PHOTON_BYTES], kind: MapKind, row: u64) -> Result<Photon, PhotonFileError> {
+    let photon = photon_of(bytes);
+    let is_good = photon.position.iter().all(|value| value.is_finite())
+        && photon
+            .flux
+            .to_array()
+            .iter()
+            .all(|value| value.is_finite() && *value >= 0.0);
+    let kind = kind.name();
+    is_good
+        .then_some(photon)
+        .ok_or(PhotonFileError::BadPhoton { kind, row })
 }
 
 fn bytes_of(photon: &Photon) -> [u8; PHOTON_BYTES] {
@@ -282,6 +208,10 @@ mod tests {
         read_photons(&mut &*bytes, &KEY)
     }
 
+    fn is_cut_off(error: &PhotonFileError) -> bool {
+        matches!(error, PhotonFileError::File(CheckedFileError::Truncated { .. }))
+    }
+
     #[test]
     fn what_is_written_is_read_again() {
         assert_eq!(read(&written()).unwrap(), maps());
@@ -292,7 +222,7 @@ mod tests {
         let good = written();
         for length in (0..good.len()).step_by(997).chain([good.len() - 1]) {
             let error = read(&good[..length]).unwrap_err();
-            assert!(matches!(error, PhotonFileError::Truncated), "{length}: {error}");
+            assert!(is_cut_off(&error), "{length}: {error}");
         }
         for place in (0..good.len()).step_by(499).chain(0..100) {
             let mut bad = good.clone();
@@ -304,11 +234,11 @@ mod tests {
 
     #[test]
     fn a_file_that_claims_too_much_takes_no_memory_for_it() {
-        let mut bytes = written()[..MAGIC.len() + 4 + 32 + 24].to_vec();
+        let mut bytes = written()[..KIND.magic.len() + 4 + 32 + 24].to_vec();
         bytes.extend(1_u32.to_le_bytes());
         bytes.extend(0_u32.to_le_bytes());
         bytes.extend(u64::MAX.to_le_bytes());
-        assert!(matches!(read(&bytes), Err(PhotonFileError::Truncated)));
+        assert!(is_cut_off(&read(&bytes).unwrap_err()));
     }
 
     #[test]

@@ -28,6 +28,10 @@ pub struct RenderRequest {
     pub outputs: Vec<PathBuf>,
     /// A file of photons to take up instead of tracing them.
     pub photons: Option<PathBuf>,
+    /// A file of irradiance records to begin with.
+    pub records: Option<PathBuf>,
+    /// Irradiance records will be kept in a file: refuse those that change during a render.
+    pub saves_records: bool,
     /// Photon maps to make beside those that the scene's methods read.
     pub photon_maps: MapKinds,
     /// Go on from the checkpoint that an interrupted render left beside its first output.
@@ -55,6 +59,8 @@ impl Default for RenderRequest {
             tile_size: 32,
             outputs: Vec::new(),
             photons: None,
+            records: None,
+            saves_records: false,
             photon_maps: MapKinds::default(),
             resume: false,
             pixels: None,

@@ -157,28 +157,39 @@ impl FilmSums {
     /// Layers that the film has: all but `volume`, which nothing renders yet.
     pub const LAYERS: usize = 5;
 
+    /// Groups of channels that every film has beside the light: what is seen first. Those of debug layers come after them.
+    const SEEN_FIRST: usize = 3;
+
+    /// Names of the debug layers that the film has.
+    pub fn debug_layers(&self) -> impl Iterator<Item = &str> {
+        let groups = self.0.layout().aux.iter().skip(Self::SEEN_FIRST);
+        groups.map(|group| group.name.as_str())
+    }
+
     /// Channels of a film that keeps the variance of every layer.
     #[must_use]
     pub fn layout_by_layer() -> ChannelLayout {
         ChannelLayout {
             layer_variance: true,
-            ..Self::layout(true)
+            ..Self::layout(true, &[])
         }
     }
 
-    /// Channels of the film, with or without the variance.
+    /// Channels of the film: the light, what is seen first, and debug layers; with or without the variance.
     #[must_use]
-    pub fn layout(variance: bool) -> ChannelLayout {
+    pub fn layout(variance: bool, debug_layers: &[&str]) -> ChannelLayout {
+        let seen_first: [AuxGroup; Self::SEEN_FIRST] = [
+            AuxGroup::rgb("albedo"),
+            AuxGroup::xyz("normal"),
+            AuxGroup::depth("depth"),
+        ];
+        let debug = debug_layers.iter().map(|name| AuxGroup::scalar(name));
         ChannelLayout {
             layers: Layer::ALL[..Self::LAYERS]
                 .iter()
                 .map(|layer| layer.name().into())
                 .collect(),
-            aux: vec![
-                AuxGroup::rgb("albedo"),
-                AuxGroup::xyz("normal"),
-                AuxGroup::depth("depth"),
-            ],
+            aux: seen_first.into_iter().chain(debug).collect(),
             variance,
             layer_variance: false,
         }

@@ -82,6 +82,7 @@ impl Plugin for DefaultStages {
                 irradiance_cache::IrradianceCacheSystems,
                 photon_map::PhotonMapSystems,
                 photon_thinning::PhotonThinningSystems,
+                irradiance_cache::RecordFileSystems,
                 camera::CameraSystems,
                 depth_of_field::DepthOfFieldSystems,
             )

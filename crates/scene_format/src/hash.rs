@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::layer::{Specifier, TimeSettings};
 use crate::relation::AssetPath;
-use crate::scene::{ComponentValue, FieldState, Prim};
+use crate::scene::{ComponentValue, FieldState, FieldValue, Prim, Scene};
 
 /// Mixes the bytes of a file, or anything else that the picture depends on, into a scene's hash.
 pub fn mix_hash(hash: &mut [u8; 32], label: &str, bytes: &[u8]) {
@@ -15,6 +15,43 @@ pub fn mix_hash(hash: &mut [u8; 32], label: &str, bytes: &[u8]) {
     writer.text(label);
     writer.bytes(bytes);
     *hash = writer.finish();
+}
+
+impl Scene {
+    /// Mixes the bytes of a file that the scene names into its hashes.
+    pub fn mix_file(&mut self, label: &str, bytes: &[u8]) {
+        let digest: [u8; 32] = Sha256::digest(bytes).into();
+        mix_hash(&mut self.hash, label, &digest);
+        mix_hash(&mut self.files, label, &digest);
+    }
+
+    /// Hashes a part of what takes part in the picture: the same for the same values, wherever else the scene differs, and
+    /// at whichever frame where nothing in that part changes over time. All files that were mixed in count.
+    ///
+    /// - `takes`: whether a component of a prim (by its index) counts, and then, of each field with an opinion, whether
+    ///   that does.
+    #[must_use]
+    pub fn hash_of_part(&self, takes: impl Fn(usize, &ComponentValue, Option<&FieldValue>) -> bool) -> [u8; 32] {
+        let mut writer = Writer::default();
+        let mut changes = false;
+        for (index, prim) in self.rendered() {
+            for component in prim.components.iter().filter(|component| takes(index, component, None)) {
+                writer.text(&prim.path);
+                write_fields(&mut writer, component, self.root(), |field| {
+                    let is_taken = takes(index, component, Some(field));
+                    changes |= is_taken && field.samples().is_some();
+                    is_taken
+                });
+            }
+        }
+        if changes {
+            for number in [self.time.start, self.time.end, self.time.fps, self.frame] {
+                writer.float(number);
+            }
+        }
+        writer.bytes(&self.files);
+        writer.finish()
+    }
 }
 
 /// Writes values so that different ones never look the same: every part has its length before it.
@@ -68,12 +105,24 @@ pub(crate) fn hash_scene(prims: &[Prim], time: TimeSettings, root: &Path) -> [u8
 }
 
 fn write_component(writer: &mut Writer, component: &ComponentValue, root: &Path) {
+    write_fields(writer, component, root, |_| true);
+}
+
+fn write_fields(
+    writer: &mut Writer,
+    component: &ComponentValue,
+    root: &Path,
+    mut takes: impl FnMut(&FieldValue) -> bool,
+) {
     writer.text(component.name);
     let authored = component
         .fields
         .iter()
         .filter(|field| !matches!(field.state, FieldState::Blocked));
     for field in authored {
+        if !takes(field) {
+            continue;
+        }
         writer.text(field.name);
         match &field.state {
             FieldState::Constant(value) => write_value(writer, &**value, root),

@@ -147,6 +147,7 @@ fn compose_scene(library: &mut Library<'_, '_>, layer: LayerId, options: &Option
     crate::mix_hash(&mut hash, "frame", &frame.to_le_bytes());
     Some(Scene {
         hash,
+        files: [0; 32],
         prims: composed.prims,
         index: composed.index,
         default_prim,

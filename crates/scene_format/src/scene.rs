@@ -32,6 +32,8 @@ pub struct Scene {
     /// SHA-256 of the composed result: the same for the same prims, components and values however
     /// they are written. Independent of where the scene lies.
     pub hash: [u8; 32],
+    /// Of the files that were mixed in alone.
+    pub(crate) files: [u8; 32],
     /// The files that fields of rendered prims name, in the order of the prims.
     pub assets: Vec<AssetUse>,
     /// What it took to compose.

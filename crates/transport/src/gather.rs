@@ -265,7 +265,7 @@ fn what_is_reflected(
             _ => (Known::Nothing, Rgb::BLACK),
         },
         Incoming::Records(cache) => match reflect_irradiance(scene, cache, path, time, vertex) {
-            CacheAnswer::Light(light) => (Known::Indirect, light),
+            CacheAnswer::Light { radiance, .. } => (Known::Indirect, radiance),
             CacheAnswer::Missing | CacheAnswer::Unsuited => (Known::Nothing, Rgb::BLACK),
         },
     }

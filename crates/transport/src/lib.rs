@@ -58,8 +58,9 @@ pub use frame::MovingFrame;
 pub use gather::{GatherMethods, GatherScratch, Incoming, gather_indirect};
 pub use guide::Guide;
 pub use irradiance::{
-    CacheAnswer, CacheSettings, ErrorMetric, Hemisphere, HemisphereSample, IrradianceCache, IrradianceRecord,
-    RecordRays, RgbGradient, Site, Spacing, find_deep_sites, find_sites, reflect_irradiance, summarize,
+    CacheAnswer, CacheSettings, ErrorMetric, Hemisphere, HemisphereSample, Interpolated, IrradianceCache,
+    IrradianceRecord, RecordRays, RgbGradient, Site, Spacing, find_deep_sites, find_sites, reflect_irradiance,
+    summarize,
 };
 pub use light::{Environment, EnvironmentMap, LightSample, LightSource, LightTable, SpotCone};
 pub use medium::PathMedium;

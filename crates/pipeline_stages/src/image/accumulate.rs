@@ -1,7 +1,7 @@
 use bevy_ecs::prelude::*;
 use bevy_ecs::world::EntityMut;
 use pipeline_core::{Counter, Counters, record_items};
-use pipeline_data::{Contributions, FilmBatch, FilmSums, FirstHits};
+use pipeline_data::{Contributions, DebugLayers, FilmBatch, FilmSums, FirstHits, NumbersOf};
 use rayon::prelude::*;
 
 /// Layers of the film.
@@ -32,6 +32,8 @@ pub(super) fn accumulate_batches(
 ) {
     let counters = &*counters.get_or_insert_with(|| SampleCounters::from_world(world));
     world.resource_scope(|world, mut film: Mut<FilmSums>| {
+        let debug_layers = world.get_resource::<DebugLayers>();
+        let numbers: Vec<_> = debug_layers.map_or_else(Vec::new, |layers| layers.of_film(&film));
         world.resource_scope(|world, terms: Mut<Contributions>| {
             let mut batches: Vec<_> = batches.iter_mut(world).collect();
             batches.sort_unstable_by_key(first_pixel);
@@ -48,7 +50,7 @@ pub(super) fn accumulate_batches(
                 .into_par_iter()
                 .zip(batches)
                 .map_init(Vec::new, |layers, (mut span, mut batch)| {
-                    add_batch(&mut batch, &mut span, &terms, counters, layers)
+                    add_batch(&mut batch, &mut span, &terms, &numbers, counters, layers)
                 })
                 .sum();
             counters.samples.add(samples as u64);
@@ -66,6 +68,7 @@ fn add_batch(
     batch: &mut EntityMut<'_>,
     span: &mut film::FilmSpan<'_>,
     terms: &Contributions,
+    numbers_of: &[NumbersOf],
     counters: &SampleCounters,
     layers: &mut Vec<[[f32; 3]; LAYERS]>,
 ) -> usize {
@@ -78,13 +81,18 @@ fn add_batch(
             *sum += value;
         }
     });
+    let numbers: Vec<&[f32]> = numbers_of.iter().map(|of| of(batch)).collect();
     let (Some(batch), Some(first_hits)) = (batch.get::<FilmBatch>(), batch.get::<FirstHits>()) else {
         return 0;
     };
     let places = batch.pixel_of_slot.iter().zip(&batch.sample_of_slot);
-    for ((radiance, (pixel, number)), hit) in layers.iter().zip(places).zip(&first_hits.0) {
-        let (albedo, normal) = (hit.albedo, hit.normal);
-        let aux = [albedo.r, albedo.g, albedo.b, normal.x, normal.y, normal.z, hit.depth];
+    let mut aux = Vec::new();
+    for (slot, ((radiance, (pixel, number)), hit)) in layers.iter().zip(places).zip(&first_hits.0).enumerate() {
+        aux.clear();
+        aux.extend(hit.albedo.to_array());
+        aux.extend(hit.normal.to_array());
+        aux.push(hit.depth);
+        aux.extend(numbers.iter().map(|of_slot| of_slot.get(slot).copied().unwrap_or(0.0)));
         let added = span.add_sample(*pixel as usize, *number, radiance, hit.alpha, &aux);
         if added.is_err() {
             counters.rejected.add(1);

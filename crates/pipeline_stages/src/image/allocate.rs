@@ -38,18 +38,13 @@ pub(super) fn allocate_film(
     if let Some(choice) = request.pixels {
         return allocate_chosen(&mut commands, choice, window, &mut report);
     }
+    let layout = || FilmSums::layout(settings.variance, &settings.debug_layers);
     let mut resumed = None;
     if let (true, Some(path)) = (request.resume, checkpoint_path(&request)) {
         match File::open(&path) {
             Ok(file) => {
                 let key = checkpoint_key(&scene, &settings);
-                match Film::load(
-                    &mut BufReader::new(file),
-                    &key,
-                    window,
-                    FilmSums::layout(settings.variance),
-                    request.tile_size,
-                ) {
+                match Film::load(&mut BufReader::new(file), &key, window, layout(), request.tile_size) {
                     Ok(film) => resumed = Some(film),
                     Err(error) => {
                         report.fail(format!(
@@ -73,10 +68,7 @@ pub(super) fn allocate_film(
             }
         }
     }
-    match resumed.map_or_else(
-        || Film::new(window, FilmSums::layout(settings.variance), request.tile_size),
-        Ok,
-    ) {
+    match resumed.map_or_else(|| Film::new(window, layout(), request.tile_size), Ok) {
         Ok(film) => commands.insert_resource(FilmSums(film)),
         Err(error) => report.fail(format!("error[film]: {error}")),
     }

@@ -16,7 +16,7 @@ const PATH_STAGE: StageKey = StageKey::new("irradiance_cache/paths");
 const STEPS: [u32; 10] = [32, 16, 8, 4, 2, 1, 1, 1, 1, 1];
 
 /// Camera rays of the levels by which deep places are found, about: these are places of the scene, not of the picture.
-const DEEP_RAYS: [u32; 3] = [256, 1024, 4096];
+const DEEP_RAYS: [u64; 3] = [256, 1024, 4096];
 
 /// Levels of all depths.
 const LEVELS: usize = (RECORD_DEPTHS - 1) * DEEP_RAYS.len() + STEPS.len();
@@ -47,6 +47,8 @@ pub(super) struct CacheFill {
     pub(super) sampled: Vec<IrradianceRecord>,
     /// Number of the next record, by depth.
     pub(super) next_number: [u32; RECORD_DEPTHS],
+    /// Number of the first record that is made here, by depth; those before it come from a file.
+    pub(super) first_number: [u32; RECORD_DEPTHS],
 }
 
 impl CacheFill {
@@ -60,11 +62,24 @@ impl CacheFill {
         }
     }
 
+    /// Goes on after records that there are already.
+    ///
+    /// - `records`: how many, by depth.
+    /// - `is_complete`: whether none is missing.
+    pub(super) fn after(self, records: [u32; RECORD_DEPTHS], is_complete: bool) -> Self {
+        Self {
+            level: if is_complete { LEVELS } else { self.level },
+            next_number: records,
+            first_number: records,
+            ..self
+        }
+    }
+
     /// Depth of the records of the next wave, and the distance between its camera rays in pixels.
-    fn next_level(&self, pixels: u32) -> (usize, u32) {
+    fn next_level(&self, pixels: u64) -> (usize, u32) {
         let (turn, level) = (self.level / DEEP_RAYS.len(), self.level % DEEP_RAYS.len());
         if turn < RECORD_DEPTHS - 1 {
-            (RECORD_DEPTHS - 1 - turn, (pixels / DEEP_RAYS[level]).isqrt().max(1))
+            (RECORD_DEPTHS - 1 - turn, ((pixels / DEEP_RAYS[level]).isqrt() as u32).max(1))
         } else {
             (0, STEPS[self.level + STEPS.len() - LEVELS])
         }
@@ -92,7 +107,7 @@ pub(super) fn generate_rays(
     }
     let level = fill.level as u32;
     let size = settings.crop_max - settings.crop_min;
-    let (depth, step) = fill.next_level(size.x * size.y);
+    let (depth, step) = fill.next_level(u64::from(size.x) * u64::from(size.y));
     (fill.depth, fill.step) = (depth, step);
     let cells = UVec2::new(size.x.div_ceil(step), size.y.div_ceil(step));
     let end = (cells.x * cells.y).min(fill.next_cell + WAVE_RAYS);

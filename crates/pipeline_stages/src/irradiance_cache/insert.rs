@@ -64,8 +64,11 @@ pub(super) fn maintain_octree(
         }
     }
     if fill.is_over() {
-        for filled in &mut cache.0 {
-            result = result.and_then(|()| filled.rebuild(&scene.0.rays.bounds()));
+        for (depth, filled) in cache.0.iter_mut().enumerate() {
+            // Records of a file alone are in an octree of their last ranges already.
+            if fill.next_number[depth] > fill.first_number[depth] {
+                result = result.and_then(|()| filled.rebuild(&scene.0.rays.bounds()));
+            }
         }
         commands.remove_resource::<CacheFill>();
         clock.records_pending -= 1;

@@ -1,5 +1,6 @@
+use super::density::RecordDensity;
 use bevy_ecs::prelude::*;
-use pipeline_core::{Counter, Counters, record_items};
+use pipeline_core::{Counter, Counters, RenderClock, record_items};
 use pipeline_data::{
     BuiltIrradianceCache, Contribution, ContributionLog, HitStream, PathStream, RayStream, RenderSettings,
     TransportScene,
@@ -44,20 +45,33 @@ impl FromWorld for LookupCounters {
     }
 }
 
+type LookupStreams<'a> = (
+    &'a RayStream,
+    &'a PathStream,
+    &'a HitStream,
+    &'a mut IrradianceContribution,
+    &'a mut RecordDensity,
+);
+
 /// Reads the cache wherever a path has reached its first diffuse lobe; traces where it has no answer, without bias.
 pub(super) fn look_up_irradiance(
-    mut batches: Query<(&RayStream, &PathStream, &HitStream, &mut IrradianceContribution)>,
+    mut batches: Query<LookupStreams<'_>>,
     scene: Res<TransportScene>,
     settings: Res<RenderSettings>,
     cache: Res<BuiltIrradianceCache>,
+    clock: Res<RenderClock>,
     counters: Local<LookupCounters>,
 ) {
+    let is_first = clock.bounce == 0;
     let methods = &settings.methods;
     let traced = GatherMethods::new(methods, false);
     let mut batches: Vec<_> = batches.iter_mut().collect();
     let counts = batches
         .par_iter_mut()
-        .map_init(GatherScratch::default, |scratch, (rays, paths, hits, log)| {
+        .map_init(GatherScratch::default, |scratch, (rays, paths, hits, log, density)| {
+            if is_first {
+                density.reset(paths.0.len());
+            }
             let [mut lookups, mut missing, mut unsuited] = [0_u64; 3];
             for ((ray, path), hit) in rays.0.iter().zip(&paths.0).zip(&hits.0) {
                 let Some(hit) = hit else { continue };
@@ -83,7 +97,15 @@ pub(super) fn look_up_irradiance(
                     )
                 };
                 let light = match answer {
-                    CacheAnswer::Light(light) => light,
+                    CacheAnswer::Light {
+                        radiance,
+                        record_density,
+                    } => {
+                        if is_first {
+                            density.set(path.slot, record_density);
+                        }
+                        radiance
+                    }
                     CacheAnswer::Missing => {
                         missing += 1;
                         trace(RAYS_WHERE_MISSING)

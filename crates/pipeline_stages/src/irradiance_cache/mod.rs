@@ -1,11 +1,12 @@
 //! Irradiance cache: indirect light computed well at few places, and interpolated between them.
 //!
 //! Scene: `"/Render": Def(LightTransport: (indirect: IrradianceCache), IrradianceCache: (rays: 1000))`
-//! Sets: `PrepareStages` (`plan_cache`), `DeriveFromMaps` (`renew_records`), all of `CachePass` (`generate_rays`,
+//! Sets: `PrepareStages` (`plan_cache`, `reload_records`), `DeriveFromMaps` (`renew_records`), all of `CachePass` (`generate_rays`,
 //! `find_sites`, `choose_sites`, `sample_records`, `insert_records`, `maintain_octree`), `LookUp` (`look_up_irradiance`).
 //! Reads the transport scene, the settings, the camera, and photon maps where `incoming` says so. Writes entities with
-//! [`IrradianceRecord`](pipeline_data::IrradianceRecord), the cache over them, and contributions.
-//! Counters: `irradiance_cache/records`, `irradiance_cache/rays`, `irradiance_cache/lookups`, of these
+//! [`IrradianceRecord`](pipeline_data::IrradianceRecord), the cache over them, their keys, contributions, and the film layer
+//! `record_density`: records of each square metre around what is seen first, m⁻² ([`RecordDensity`]).
+//! Counters: `irradiance_cache/records` that were made, `irradiance_cache/reused` from a file, `irradiance_cache/rays`, `irradiance_cache/lookups`, of these
 //! `irradiance_cache/missing` where no record held, and `irradiance_cache/unsuited`.
 //!
 //! Before the first wave the cache is filled, coarse to fine over the image: camera rays 32 pixels apart, then 16, and so on
@@ -19,17 +20,25 @@
 //! behind the camera as well, and are made first: the deepest of paths to the end, those of the next depth by reading them. The eye
 //! reads none of them.
 //!
+//! Records can be kept in a file (`pipeline records`, `run --records`). Two keys say what they are worth elsewhere: one of their
+//! light, which must agree, and one of the view. For the same view none is missing, and the image has the same bits; for another
+//! they are inserted first, and the filling adds what it lacks. Spacings count in pixels of the view that a record was made for,
+//! and photons that it read were aimed at what that view sees.
+//!
 //! What the cache is not asked, and what no record tells of, is traced: glossy D lobes, normal maps, things that move,
 //! and places that only a lens or a moment shows. The cache is filled through a pinhole, at random moments.
 //!
 //! Limits: light that changes faster than records follow is blurred, as shadows of indirect light at contacts. `max_depth` is
-//! counted from the record. The records of a crop are not those of the whole picture.
+//! counted from the record. Records that read progressive photon maps are new in every pass and cannot be kept. The records of a
+//! crop are not those of the whole picture.
 //! Source: see [`transport::IrradianceCache`].
 
+mod density;
 mod fill;
 mod insert;
 mod look_up;
 mod plan;
+mod reload;
 mod sample;
 mod sites;
 
@@ -42,10 +51,11 @@ use fill::CacheFill;
 use pipeline_core::{
     Bounce, BounceSystems, CachePass, CacheSystems, PhotonPass, PhotonSystems, Prepare, PrepareSystems,
 };
-use pipeline_data::{Contributions, PhotonDemand};
+use pipeline_data::{Contributions, DebugLayers, PhotonDemand};
 use plan::CachePlan;
 use scene_format::Range;
 
+pub use density::RecordDensity;
 pub use look_up::IrradianceContribution;
 
 /// Settings of the irradiance cache, on the prim that carries `Render`; used when `LightTransport.indirect` is
@@ -128,6 +138,11 @@ pub enum IncomingLight {
 #[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
 pub struct IrradianceCacheSystems;
 
+/// Where records are taken from a file, once it is known which photons they read. Between this and
+/// [`IrradianceCacheSystems`], whoever makes photons prepares.
+#[derive(SystemSet, Clone, Debug, PartialEq, Eq, Hash)]
+pub struct RecordFileSystems;
+
 /// Adds the irradiance cache.
 pub struct IrradianceCachePlugin;
 
@@ -135,11 +150,18 @@ impl Plugin for IrradianceCachePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<IrradianceCache>().init_resource::<PhotonDemand>();
         Contributions::register::<IrradianceContribution>(app);
+        DebugLayers::register::<RecordDensity>(app);
         app.add_systems(
             Prepare,
             plan::plan_cache
                 .in_set(PrepareSystems::PrepareStages)
                 .in_set(IrradianceCacheSystems),
+        )
+        .add_systems(
+            Prepare,
+            reload::reload_records
+                .in_set(PrepareSystems::PrepareStages)
+                .in_set(RecordFileSystems),
         )
         .add_systems(
             PhotonPass,

@@ -31,6 +31,22 @@ pub(super) struct CachePlan {
     pub(super) reads_photons: bool,
 }
 
+impl CachePlan {
+    /// Caches without records.
+    pub(super) fn empty_cache(&self, scene: &TransportScene) -> BuiltIrradianceCache {
+        let bounds = scene.0.rays.bounds();
+        BuiltIrradianceCache(
+            self.settings
+                .map(|settings| transport::IrradianceCache::new(settings, &bounds)),
+        )
+    }
+
+    /// A filling that begins. Where photons tell what deep records would, there are none.
+    pub(super) fn new_fill(&self, generation: u32) -> CacheFill {
+        CacheFill::new(!self.reads_photons, generation)
+    }
+}
+
 /// Takes up the settings, asks for photon maps where they are read, and asks for records.
 pub(super) fn plan_cache(
     mut commands: Commands,
@@ -76,6 +92,16 @@ pub(super) fn plan_cache(
             &["max_spacing"],
         );
         findings.push_at(place, Diagnostic::error("out-of-range", message));
+    }
+    if !is_chosen && (clock.records_only || report.request().records.is_some()) {
+        let prim = &report.scene().prims[settings.render_prim as usize].path;
+        let finding = Diagnostic::error(
+            "no-records",
+            "this scene has no records: `LightTransport.indirect` is not `IrradianceCache`",
+        )
+        .note(format!("add `--set {prim}.LightTransport.indirect=IrradianceCache`"));
+        let place = field_place(report.scene(), settings.render_prim, "LightTransport", &["indirect"]);
+        findings.push_at(place, finding);
     }
     report.file(findings);
     if !is_chosen {
@@ -129,12 +155,8 @@ pub(super) fn plan_cache(
 
 /// Asks for records, the caches as empty as at first.
 fn begin(commands: &mut Commands<'_, '_>, plan: &CachePlan, scene: &TransportScene, generation: u32) {
-    let bounds = scene.0.rays.bounds();
-    let empty = plan
-        .settings
-        .map(|settings| transport::IrradianceCache::new(settings, &bounds));
-    commands.insert_resource(BuiltIrradianceCache(empty));
-    commands.insert_resource(CacheFill::new(!plan.reads_photons, generation));
+    commands.insert_resource(plan.empty_cache(scene));
+    commands.insert_resource(plan.new_fill(generation));
 }
 
 /// True when photons have landed that records read, and there are records that read others.

@@ -5,7 +5,7 @@ use pipeline_core::Report;
 use pipeline_data::vocabulary::{EnvironmentLight, Findings, field_place};
 use pipeline_data::{ComposedScene, EnvironmentMaps, PrimIndex, RenderRequest};
 use radiometry::Rgb;
-use scene_format::{Diagnostic, mix_hash};
+use scene_format::Diagnostic;
 use std::path::Path;
 use std::sync::Arc;
 use texture::{Picture, PictureLimits, decode};
@@ -28,7 +28,7 @@ pub(super) fn import_environments(
         let Some(file) = &light.file else { continue };
         let path = Path::new(&file.0);
         let decoded = read_picture(path, &limits).and_then(|bytes| {
-            mix_hash(&mut composed.0.hash, "environment", &bytes);
+            composed.0.mix_file("environment", &bytes);
             decode(&bytes, &limits).map_err(|error| error.to_string())
         });
         match decoded {

@@ -5,7 +5,7 @@ use pipeline_data::{ComposedScene, ImportedMesh, MeshKey, MeshStore, PrimIndex, 
 use rayon::prelude::*;
 use scene_format::{
     Diagnostic, MeshData, MeshError, MeshLimits, MeshWarning, Model, ModelError, ModelFile, Oddity, Place, Scene,
-    is_model, mix_hash,
+    is_model,
 };
 use spatial::TriangleMesh;
 use std::collections::BTreeMap;
@@ -70,7 +70,7 @@ pub(super) fn import_meshes(
             Ok(imported) => {
                 imported.warnings.report(file, &request, &mut findings);
                 for bytes in &imported.files {
-                    mix_hash(&mut composed.0.hash, "mesh", bytes);
+                    composed.0.mix_file("mesh", bytes);
                 }
                 for (part, mesh) in file.parts.iter().zip(imported.meshes) {
                     match mesh {

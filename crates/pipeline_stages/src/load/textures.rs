@@ -4,7 +4,7 @@ use pipeline_core::{Counters, Report};
 use pipeline_data::vocabulary::{Diffuse, Findings, Principled, TextureMap, field_place};
 use pipeline_data::{ComposedScene, PictureKey, PrimIndex, RenderRequest, TextureStore};
 use rayon::prelude::*;
-use scene_format::{Diagnostic, MeshLimits, Model, ModelFile, Place, Scene, is_model, mix_hash};
+use scene_format::{Diagnostic, MeshLimits, Model, ModelFile, Place, Scene, is_model};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use texture::{Picture, PictureLimits, decode};
@@ -63,7 +63,7 @@ pub(super) fn import_textures(
     let mut store = TextureStore::default();
     for (file, imported) in files.wanted.into_iter().zip(imported) {
         for bytes in &imported.bytes {
-            mix_hash(&mut composed.0.hash, "texture", bytes);
+            composed.0.mix_file("texture", bytes);
         }
         let shown = shown_path(&file.path, &request.scene);
         for ((image, place), picture) in file.pictures.into_iter().zip(imported.pictures) {

@@ -6,7 +6,8 @@ use pipeline_data::vocabulary::{
     Camera, Film, Findings, LightTransport, Render, SceneReport, SpecularMethod, component_place, field_place,
 };
 use pipeline_data::{
-    CameraFrame, FilmSums, PrimIndex, RenderRequest, RenderSettings, SceneOrigin, WorldMotion, WorldTransform,
+    CameraFrame, DebugLayers, FilmSums, PrimIndex, RenderRequest, RenderSettings, SceneOrigin, WorldMotion,
+    WorldTransform,
 };
 use scene_format::{Diagnostic, Scene};
 
@@ -32,6 +33,7 @@ pub(super) fn resolve_settings(
     mut commands: Commands,
     mut check: SceneReport,
     origin: Res<SceneOrigin>,
+    debug_layers: Option<Res<DebugLayers>>,
     renders: Query<RenderPrim<'_>>,
     cameras: Query<CameraPrim<'_>>,
     strays: Query<Stray<'_>, IsStray>,
@@ -45,6 +47,7 @@ pub(super) fn resolve_settings(
     if let Some((index, render, film, methods)) = the_render(scene, request, &renders, &cameras, &mut findings) {
         let default = Film::default();
         let mut settings = settings(*index, render, film.unwrap_or(&default), methods, request);
+        settings.debug_layers = debug_layers.map_or_else(Vec::new, |layers| layers.shown(&settings));
         check_film(scene, &settings, request, &mut findings);
         let frame = find_camera(scene, &settings, render, &cameras, &origin, &mut findings);
         if let (Some((camera_prim, frame)), false) = (frame, findings.has_error()) {
@@ -141,6 +144,7 @@ fn settings(
         filter: film.filter.into(),
         filter_radius: film.filter_radius,
         variance: film.variance || is_chosen,
+        debug_layers: Vec::new(),
         exposure: film.exposure,
         tone_map: film.tone_map.into(),
         render_prim: index.0,
@@ -211,7 +215,7 @@ fn check_film(scene: &Scene, settings: &RenderSettings, request: &RenderRequest,
 /// Memory of the film: of the whole window, or of the pixels that were chosen.
 fn film_bytes(window: &FilmWindow, settings: &RenderSettings, request: &RenderRequest) -> u64 {
     let Some(choice) = request.pixels else {
-        return film::memory_bytes(window, &FilmSums::layout(settings.variance));
+        return film::memory_bytes(window, &FilmSums::layout(settings.variance, &settings.debug_layers));
     };
     let most = u64::from(choice.count) * u64::from(choice.side) * u64::from(choice.side);
     let pixels = window.pixel_count().min(usize::try_from(most).unwrap_or(usize::MAX));

@@ -292,7 +292,8 @@ impl Sphere {
         let rounding = SLACK * (half + self.radius) + 4.0 * f32::EPSILON * self.position.abs().max_element();
         let outside = (offset - Vec3::splat(half)).max(Vec3::ZERO);
         let reach = self.radius + rounding;
-        outside.length_squared() <= reach * reach
+        // Of what is very far away the squares are infinite, and tell nothing.
+        outside.max_element() <= reach && outside.length_squared() <= reach * reach
     }
 }
 

@@ -100,7 +100,9 @@ fn spheres_that_hold_nothing_are_refused() {
         assert_eq!(octree.insert(position, 1.0), Err(RecordOctreeError::PositionNotFinite));
         assert!(octree.candidates(position).next().is_none());
     }
-    assert_eq!(octree.insert(Vec3::splat(100.0), 1.0), Err(RecordOctreeError::Outside));
+    for far in [100.0, 1e30] {
+        assert_eq!(octree.insert(Vec3::splat(far), 1.0), Err(RecordOctreeError::Outside));
+    }
     assert!(octree.is_empty() && octree.candidates(Vec3::splat(100.0)).next().is_none());
     assert_eq!(octree.validate(), Ok(()));
 }

@@ -55,6 +55,28 @@ impl IrradianceCache {
         }
     }
 
+    /// A cache of records that another has kept, by number. Their ranges are what neighbours have left, and stay so until others
+    /// are inserted.
+    ///
+    /// - `bounds`: of the scene.
+    ///
+    /// # Errors
+    /// The first record that [`IrradianceCache::accepts`] refuses.
+    pub fn restore(
+        settings: CacheSettings,
+        bounds: &Bounds,
+        records: Vec<IrradianceRecord>,
+    ) -> Result<Self, RecordOctreeError> {
+        let mut cache = Self::new(settings, bounds);
+        for record in &records {
+            cache.accepts(record)?;
+        }
+        cache.records = records;
+        cache.neighbours.add(&cache.records)?;
+        cache.rebuild(bounds)?;
+        Ok(cache)
+    }
+
     /// Whether a record can be kept: its place is in the scene and its numbers are finite.
     ///
     /// # Errors

@@ -29,6 +29,14 @@ impl Neighbours {
         self.octree.memory_bytes()
     }
 
+    /// Adds records whose ranges are as they should be.
+    pub(super) fn add(&mut self, records: &[IrradianceRecord]) -> Result<(), RecordOctreeError> {
+        for record in records {
+            self.octree.insert(record.position, record.range / self.slope)?;
+        }
+        Ok(())
+    }
+
     /// Adds the records from row `first` on, and lowers ranges until nothing changes any more.
     ///
     /// Looked at are those in whose range a new record lies. An old one that lies in the range of a new one, but not the other
@@ -40,9 +48,7 @@ impl Neighbours {
         records: &mut [IrradianceRecord],
         first: usize,
     ) -> Result<(), RecordOctreeError> {
-        for record in &records[first..] {
-            self.octree.insert(record.position, record.range / self.slope)?;
-        }
+        self.add(&records[first..])?;
         let mut open: VecDeque<u32> = (first as u32..records.len() as u32).collect();
         let mut is_open = vec![false; records.len()];
         is_open[first..].fill(true);

@@ -1,6 +1,7 @@
 use super::{IrradianceCache, IrradianceRecord};
 use glam::Vec3;
 use radiometry::Rgb;
+use std::f32::consts::FRAC_1_PI;
 
 /// How far a place may lie before or behind the plane of a record, in ranges times a.
 const FRONT_TOLERANCE: f32 = 0.1;
@@ -10,6 +11,17 @@ const CLEAR_SHARE: f32 = 0.5;
 
 /// ε a of the error at the record itself, so that the weight of the plain form is finite there.
 const LEAST_ERROR: f32 = 0.01;
+
+/// What records tell of a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interpolated {
+    /// E of indirect light, W·m⁻², no channel negative.
+    pub irradiance: Rgb,
+    /// How many records there are on each square metre around, m⁻²: `Σ_j 1/(π R_j²)` over those that count, `R_j` the distance
+    /// within which they do. Each is spread evenly over the disc that it tells of, so over a flat surface it adds up to their
+    /// number. Source: kernels by sample point (Breiman, Meisel and Purcell, 1977).
+    pub record_density: f32,
+}
 
 impl IrradianceCache {
     /// True when a record tells enough of a place that no other is needed.
@@ -35,13 +47,17 @@ impl IrradianceCache {
     /// well, so that the noise of no single record shows (a cone: Tabellion and Lamorlette, SIGGRAPH 2004).
     ///
     /// - `normal`, `sees`: as for [`IrradianceCache::covers`].
-    /// - returns W·m⁻², of indirect light alone, no channel negative.
     #[inline]
     #[must_use]
-    pub fn interpolate(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> Option<Rgb> {
+    pub fn interpolate(
+        &self,
+        position: Vec3,
+        normal: Vec3,
+        sees: impl Fn(&IrradianceRecord) -> bool,
+    ) -> Option<Interpolated> {
         let min_weight = self.settings.read_weight();
         let records = self.octree.candidates(position).map(|row| &self.records[row as usize]);
-        let (mut sum, mut weights) = (Rgb::BLACK, 0.0);
+        let (mut sum, mut weights, mut record_density) = (Rgb::BLACK, 0.0, 0.0);
         for record in records {
             let Some(error) = error_at(record, position, normal, min_weight) else {
                 continue;
@@ -57,8 +73,13 @@ impl IrradianceCache {
             };
             sum += value * weight;
             weights += weight;
+            let reach = record.effective_range() / min_weight;
+            record_density += FRAC_1_PI / (reach * reach);
         }
-        (weights > 0.0).then(|| (sum * (1.0 / weights)).map(|channel| channel.max(0.0)))
+        (weights > 0.0).then(|| Interpolated {
+            irradiance: (sum * (1.0 / weights)).map(|channel| channel.max(0.0)),
+            record_density,
+        })
     }
 }
 

@@ -32,6 +32,7 @@ use std::array;
 
 pub use cache::{CacheSettings, IrradianceCache};
 pub use hemisphere::{Hemisphere, HemisphereSample, RecordRays, Site};
+pub use interpolate::Interpolated;
 pub use reflect::{CacheAnswer, find_deep_sites, find_sites, reflect_irradiance};
 pub use summary::{Spacing, summarize};
 

@@ -24,8 +24,13 @@ const LIFT: f32 = 0.05;
 /// What the cache knows of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CacheAnswer {
-    /// Reflected radiance of indirect light in W·m⁻²·sr⁻¹, weighted with what the path carries.
-    Light(Rgb),
+    /// Some records do.
+    Light {
+        /// Reflected radiance of indirect light in W·m⁻²·sr⁻¹, weighted with what the path carries.
+        radiance: Rgb,
+        /// Records of each square metre around, as in [`Interpolated`].
+        record_density: f32,
+    },
     /// No record holds there.
     Missing,
     /// Irradiance does not tell what such a surface reflects.
@@ -61,11 +66,14 @@ pub fn reflect_irradiance(
     }
     let (position, normal) = (vertex.point.p, vertex.facing_shading_normal());
     let sees = |record: &IrradianceRecord| sees(scene, position, normal, record, time);
-    let Some(irradiance) = cache.interpolate(position, normal, sees) else {
+    let Some(found) = cache.interpolate(position, normal, sees) else {
         return CacheAnswer::Missing;
     };
     let u = path.stream.split(REFLECT_STAGE, 1, 0).draw_2d(path.depth, 0);
-    CacheAnswer::Light(path.throughput * vertex.diffuse_reflectance(u) * irradiance * FRAC_1_PI)
+    CacheAnswer::Light {
+        radiance: path.throughput * vertex.diffuse_reflectance(u) * found.irradiance * FRAC_1_PI,
+        record_density: found.record_density,
+    }
 }
 
 /// Follows a camera path to where the eye asks the cache, and one ray from each such place on to where it would ask in turn:

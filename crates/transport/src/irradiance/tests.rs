@@ -175,7 +175,8 @@ fn cache_of(records: &[IrradianceRecord], gradients: bool) -> IrradianceCache {
 }
 
 fn read(cache: &IrradianceCache, position: Vec3, normal: Vec3) -> Option<f32> {
-    cache.interpolate(position, normal, |_| true).map(|e| e.r)
+    let told = cache.interpolate(position, normal, |_| true);
+    told.map(|told| told.irradiance.r)
 }
 
 #[test]
@@ -316,4 +317,44 @@ fn a_summary_keeps_its_range_in_bounds() {
     ] {
         assert!(cache.insert(&[hostile]).is_err() && cache.records().is_empty());
     }
+}
+
+#[test]
+fn a_restored_cache_tells_what_the_old_one_told() {
+    let place = |i: u32| {
+        let u = SampleStream::new(5, StageKey::new("places"), 0, i).draw_2d(0, 0);
+        Vec3::new(3.0 * u.x - 1.5, 3.0 * u.y - 1.5, 0.0)
+    };
+    let mut old = cache_of(&[], true);
+    // In rounds, so that ranges are lowered again and again.
+    for round in 0..20 {
+        let of_round = |i: u32| record(place(i), 0.1 + 3.0 * (i % 7) as f32, i as f32);
+        let new: Vec<IrradianceRecord> = (round * 10..round * 10 + 10).map(of_round).collect();
+        old.insert(&new).unwrap();
+    }
+    old.rebuild(&ROOM).unwrap();
+    let restored = IrradianceCache::restore(old.settings, &ROOM, old.records().to_vec()).unwrap();
+    assert_eq!(restored.records(), old.records());
+    let at = |cache: &IrradianceCache, i: u32| read(cache, place(i), Vec3::Z);
+    assert!((1000..2000).all(|i| at(&restored, i) == at(&old, i)));
+    let outside = [record(Vec3::splat(1e6), 1.0, 1.0)];
+    assert!(IrradianceCache::restore(old.settings, &ROOM, outside.to_vec()).is_err());
+}
+
+#[test]
+fn the_density_of_records_adds_up_to_their_number() {
+    const STEPS: u32 = 400;
+    let records = [(0.0, 0.0, 3.0), (0.2, 0.1, 2.0), (-0.5, 0.4, 4.0)];
+    let records = records.map(|(x, y, range)| record(Vec3::new(x, y, 0.0), range, 1.0));
+    let cache = cache_of(&records, true);
+    let side = 4.0 / STEPS as f32;
+    let place =
+        |i: u32| Vec3::new((i % STEPS) as f32 + 0.5, (i / STEPS) as f32 + 0.5, 0.0) * side - Vec3::new(2.0, 2.0, 0.0);
+    let density = |i: u32| {
+        cache
+            .interpolate(place(i), Vec3::Z, |_| true)
+            .map_or(0.0, |told| told.record_density)
+    };
+    let count: f32 = (0..STEPS * STEPS).map(|i| density(i) * side * side).sum();
+    assert!((count - 3.0).abs() < 0.01, "{count}");
 }

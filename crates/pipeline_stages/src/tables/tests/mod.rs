@@ -1,6 +1,7 @@
 //! Whole scenes through `Load` and `Prepare`, one mistake each.
 
 mod broken;
+mod keys;
 mod lights;
 mod materials;
 mod settings;

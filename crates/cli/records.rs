@@ -1,0 +1,73 @@
+//! `pipeline records`: draws the irradiance records of a scene, or writes them down.
+
+use crate::args::RecordsArgs;
+use crate::cache_session::CacheSession;
+use crate::exit::Failure;
+use crate::parse::CacheFormat;
+use crate::point_picture::{self, Point};
+use crate::record_colour::Colours;
+use crate::record_ply;
+use crate::summary;
+use bevy_app::App;
+use bevy_ecs::world::World;
+use film::{WriteError, atomic_write};
+use pipeline_core::RenderClock;
+use pipeline_data::{IrradianceRecord, RecordKeys, RecordsByDepth, SceneOrigin, write_records};
+use std::path::Path;
+
+/// Extension of files that a render takes up again.
+const OWN: &str = "records";
+
+pub(crate) fn execute(options: &RecordsArgs) -> Result<(), Failure> {
+    let session = CacheSession {
+        scene: &options.scene,
+        draw: &options.draw,
+        output: &options.output,
+        clock: RenderClock {
+            records_only: true,
+            ..RenderClock::default()
+        },
+    };
+    let mut app = session.make(|request| {
+        request.records = options.records.clone();
+        request.saves_records = options.output.iter().any(|path| is_own(path));
+    })?;
+    let records = made(&mut app);
+    // Deep records are in files alone: the eye does not read them.
+    let (seen, deep) = records.split_at(records.partition_point(|entity| entity.depth == 0));
+    let colours = Colours::new(options.colour, seen);
+    let mut found = vec![format!("{} records, and {} deeper ones", seen.len(), deep.len())];
+    found.extend(summary::reused_records(&app));
+    session.write(&found, |path| write(app.world(), path, &records, &colours))
+}
+
+fn is_own(path: &Path) -> bool {
+    CacheFormat::of(path, OWN) == Some(CacheFormat::Own)
+}
+
+/// The record entities, by depth and number.
+fn made(app: &mut App) -> Vec<IrradianceRecord> {
+    let mut records = app.world_mut().query::<&IrradianceRecord>();
+    let mut records: Vec<IrradianceRecord> = records.iter(app.world()).copied().collect();
+    records.sort_unstable_by_key(|entity| (entity.depth, entity.number));
+    records
+}
+
+fn write(world: &World, path: &Path, records: &[IrradianceRecord], colours: &Colours) -> Result<(), WriteError> {
+    let origin = *world.resource::<SceneOrigin>();
+    let seen = &records[..records.partition_point(|entity| entity.depth == 0)];
+    match (CacheFormat::of(path, OWN), world.get_resource::<RecordKeys>()) {
+        (Some(CacheFormat::Ply), _) => atomic_write(path, |file| record_ply::write(file, seen, origin.0, colours)),
+        (Some(CacheFormat::Own), Some(keys)) => {
+            let of_depth = |depth: usize| records.iter().filter(move |entity| entity.depth as usize == depth);
+            let records: RecordsByDepth =
+                std::array::from_fn(|depth| of_depth(depth).map(|entity| entity.record).collect());
+            atomic_write(path, |file| write_records(file, keys, origin, &records))
+        }
+        // Without keys records change during a render; to keep them was refused before any was made.
+        (Some(CacheFormat::Png | CacheFormat::Own) | None, _) => {
+            let points: Vec<Point> = seen.iter().map(|entity| colours.point(entity)).collect();
+            point_picture::write(path, world, &points)
+        }
+    }
+}
