@@ -86,6 +86,7 @@ pub(super) fn plan_cache(
             min_weight: chosen.min_weight,
             cell_records: chosen.cell_records as usize,
             gradients: chosen.gradients,
+            validity: chosen.validity,
         },
         spacing: Spacing {
             min_pixels: chosen.min_spacing,

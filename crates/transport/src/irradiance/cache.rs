@@ -12,6 +12,8 @@ pub struct CacheSettings {
     pub cell_records: usize,
     /// Whether records are extrapolated by their gradients and weighed smoothly; else as by Ward, Rubinstein and Clear.
     pub gradients: bool,
+    /// Whether records are asked if they hold behind walls and around corners, too; else they are taken to.
+    pub validity: bool,
 }
 
 /// Extrapolated records are read so many times further than where no other is made beside them. Their weights fall smoothly, so

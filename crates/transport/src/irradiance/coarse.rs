@@ -40,7 +40,7 @@ impl Coarse {
     pub(super) fn insert(&mut self, records: &[IrradianceRecord], first: usize) -> Result<(), RecordOctreeError> {
         for (number, record) in (first as u32..).zip(&records[first..]) {
             let covers = |other: &IrradianceRecord| {
-                error_at(other, record.position, record.normal, self.min_weight)
+                error_at(other, record.position, record.normal, self.min_weight, true)
                     .is_some_and(|error| error < COVERED_SHARE)
             };
             if self.candidates(record.position, records).any(covers) {

@@ -116,6 +116,7 @@ const SETTINGS: CacheSettings = CacheSettings {
     min_weight: 10.0,
     cell_records: 8,
     gradients: true,
+    validity: true,
 };
 
 fn record(position: Vec3, range: f32, irradiance: f32) -> IrradianceRecord {
