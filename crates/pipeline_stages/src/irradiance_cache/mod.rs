@@ -30,6 +30,8 @@ mod look_up;
 mod plan;
 mod sample;
 mod sites;
+#[cfg(test)]
+mod tests;
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
