@@ -109,10 +109,7 @@ impl FormFactors {
             }
             added_before = added;
         }
-        Solution {
-            rounds,
-            estimated: 0.0,
-        }
+        Solution { rounds, estimated: 0.0 }
     }
 }
 
