@@ -119,7 +119,35 @@ fn photons() {
     }
 }
 
+/// The filling of the irradiance cache: camera rays, choice, rays of records, and the octree together.
+fn records() {
+    const FIELDS: [&str; 1] = ["LightTransport.indirect=IrradianceCache"];
+    const SYSTEMS: [&str; 6] = [
+        "irradiance_cache::fill::generate_rays",
+        "find_sites",
+        "choose_sites",
+        "sample_records",
+        "insert_records",
+        "maintain_octree",
+    ];
+    for scene in [
+        "tests/references/cornell/scene.ron",
+        "tests/references/small_interior/scene.ron",
+    ] {
+        let ratios = (0..ROUNDS).map(|_| {
+            let started = Instant::now();
+            wait(vec![start(scene, 2, 1, "both", &FIELDS)], started);
+            let apart = ["first", "second"].map(|label| start(scene, 1, 1, label, &FIELDS));
+            wait(apart.into(), started);
+            let [both, first, second] = ["both", "first", "second"].map(|label| seconds_of(&SYSTEMS, label));
+            0.5 * (first + second) / (2.0 * both)
+        });
+        print(&format!("filling the irradiance cache, {scene}"), ratios.collect());
+    }
+}
+
 fn main() {
+    records();
     photons();
     paths();
 }

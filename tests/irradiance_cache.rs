@@ -149,6 +149,105 @@ fn no_light_leaks_through_a_wall() {
     }
 }
 
+/// Bias is planted by using records wherever they are near, behind the wall too. An audit has to find it, and nothing where records
+/// are used as they should be, as often as its confidence says.
+#[test]
+fn audits_find_records_that_are_used_through_a_wall() {
+    /// Trials with the test of validity and without.
+    const TRIALS: [u32; 2] = [12, 4];
+    /// Of those without bias, at 99 % confidence; two have a chance of 0.6 %.
+    const MOST_ALARMS: usize = 1;
+    let folder = tempfile::tempdir().expect("a folder for the scene");
+    let path = folder.path().join("wall.ron");
+    std::fs::write(&path, WALL).expect("a writable folder");
+    let alarms = |validity: bool, trials: u32| -> usize {
+        // The noise of few rays stays in the records, so that it is a bias of the picture.
+        let fields = [
+            "/Render.IrradianceCache.rays=512",
+            &format!("/Render.IrradianceCache.validity={validity}"),
+        ];
+        let is_alarm = |trial: &u32| {
+            let trial = trial.to_string();
+            let options = [
+                "--traced-samples",
+                "64",
+                "--budget",
+                "1h",
+                "--trial",
+                &trial,
+                "--seed",
+                &trial,
+            ];
+            let ran = attempt("audit", &path, &options, &fields);
+            let told = String::from_utf8_lossy(&ran.stdout);
+            let is_found = ran.status.code() == Some(1);
+            assert!(is_found || ran.status.success(), "{told}{}", ran.status);
+            assert_eq!(told.contains("no bias of more than 1 % found"), !is_found, "{told}");
+            // Behind the wall nothing but black is traced.
+            let lists_leaks = told
+                .lines()
+                .any(|line| line.contains("over black") && line.ends_with("indirect G"));
+            assert_eq!(lists_leaks, !validity, "{told}");
+            is_found
+        };
+        (0..trials).filter(is_alarm).count()
+    };
+    let (false_alarms, found) = (alarms(true, TRIALS[0]), alarms(false, TRIALS[1]));
+    println!("{false_alarms} false alarms and {found} leaks found in {TRIALS:?} trials");
+    assert!(false_alarms <= MOST_ALARMS, "{false_alarms} false alarms");
+    assert_eq!(found, TRIALS[1] as usize);
+}
+
+/// Gradients against the plain form, at as many records.
+#[test]
+fn gradients_lower_the_error_of_as_many_records() {
+    /// What the numbers of records may differ by: each form decides by itself how far a record holds.
+    const SAME: f64 = 0.03;
+    let size = ["--resolution", "48x48"];
+    let dark = "/Render.LightTransport.direct=Off";
+    let traced = render(
+        &scene("cornell"),
+        &[&size[..], &["--samples", "1024"]].concat(),
+        &[dark],
+    );
+    let traced = layer(&traced, "indirect");
+    let measure = |gradients: bool| {
+        let folder = tempfile::tempdir().expect("a folder for the profile");
+        let profile = file(&folder, "profile.json");
+        let form = format!("/Render.IrradianceCache.gradients={gradients}");
+        let fields = [dark, CACHE, RAYS, "/Render.IrradianceCache.min_weight=5", &form];
+        let image = render(
+            &scene("cornell"),
+            &[&size[..], &["--samples", "64", "--profile", &profile]].concat(),
+            &fields,
+        );
+        let error = film::compare(&layer(&image, "indirect"), &traced, 0).expect("same size");
+        (records_of(&profile), error.rel_mse)
+    };
+    let [(records, smooth), (plain_records, plain)] = [true, false].map(measure);
+    println!("relMSE {smooth:.5} of {records} records with gradients, {plain:.5} of {plain_records} without");
+    assert!(
+        (records / plain_records - 1.0).abs() < SAME,
+        "{records} {plain_records}"
+    );
+    assert!(smooth < plain, "{smooth} {plain}");
+}
+
+/// Records that a render made, by its profile.
+fn records_of(profile: &str) -> f64 {
+    let text = std::fs::read_to_string(profile).expect("a profile that was written");
+    let lines: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let mut lines = lines.as_array().expect("a line for each system").iter();
+    let inserts = |line: &&serde_json::Value| {
+        line["system"]
+            .as_str()
+            .is_some_and(|name| name.contains("insert_records"))
+    };
+    lines.find(inserts).expect("the system ran")["items"]
+        .as_f64()
+        .expect("a count")
+}
+
 /// What blocks of 8×8 pixels may be off by against path tracing: noise of both at these few samples.
 const BLOCK: f64 = 0.04;
 

@@ -50,6 +50,27 @@ fn furnaces_shine_alike() {
     }
 }
 
+/// A furnace whose light is reflected a limited number of times: `L_e (1 + ρ + … + ρⁿ)`.
+#[test]
+fn light_is_reflected_no_more_often_than_it_may() {
+    /// What the mean of the image may be off by.
+    const MEAN: f64 = 0.005;
+    let (albedo, emitted) = (0.8_f64, 0.2);
+    for (label, fields) in [("seen", SEEN), ("gathered", GATHERED)] {
+        for depth in 1..=5 {
+            let limit = format!("/Render.Render.max_depth={depth}");
+            let options = ["--resolution", "32x32", "--samples", "16"];
+            let mean = means(&beauty("furnace80", &options, &[fields, &[limit.as_str()]].concat()))[1];
+            let expected: f64 = (0..=depth).map(|n| emitted * albedo.powi(n)).sum();
+            println!("{label}, {depth} reflections: {mean:.4}, expected {expected:.4}");
+            assert!(
+                (mean / expected - 1.0).abs() < MEAN,
+                "{label}, {depth}: {mean}, not {expected}"
+            );
+        }
+    }
+}
+
 /// How far the Cornell box is from its reference: the means of the image, and blocks at the median and 95th percentile.
 fn assert_cornell(label: &str, side: u32, samples: &str, fields: &[&str], [most_mean, median, high]: [f64; 3]) {
     let resolution = format!("{side}x{side}");
@@ -96,6 +117,19 @@ fn threads_change_no_bit() {
         };
         let first = picture("1");
         assert!(["2", "3"].iter().all(|threads| picture(threads) == first), "{fields:?}");
+    }
+}
+
+#[test]
+fn surfaces_that_move_are_told_of() {
+    let folder = tempfile::tempdir().expect("a folder for the image");
+    let output = file(&folder, "image.exr");
+    let options = ["--resolution", "8x8", "--samples", "1", "-o", &output];
+    for (name, moves) in [("dof_motion", true), ("cornell", false)] {
+        let ran = attempt("run", &scene(name), &options, SEEN);
+        let said = String::from_utf8_lossy(&ran.stderr);
+        assert!(ran.status.success(), "{said}");
+        assert_eq!(said.contains("warning[moving-surfaces]"), moves, "{said}");
     }
 }
 

@@ -84,6 +84,67 @@ fn resuming_gives_the_same_bits() {
     assert!(interrupted > 1, "the render is too short to be interrupted");
 }
 
+/// Records that take a second or more, then few samples.
+const CACHED: &str = "--samples 4 --resolution 32x32 --set /Render.LightTransport.indirect=IrradianceCache \
+                      --set /Render.IrradianceCache.rays=8000";
+
+#[test]
+fn a_cache_that_is_not_filled_is_made_anew() {
+    let folder = Folder::with_scene(BALLS);
+    folder.succeed(&format!("run scene.ron -o whole.exr -o whole.png {CACHED}"));
+    let line = format!("run scene.ron -o part.exr -o part.png {CACHED}");
+    let mut interrupted = 0_u32;
+    for delay in [50, 200, 400] {
+        let (status, said) = interrupt(&folder, &line, "-INT", Duration::from_millis(delay));
+        let image = film::read_exr(&folder.path("part.exr")).unwrap();
+        assert_whole_png(&folder.bytes("part.png"));
+        if status.code() == Some(0) {
+            continue;
+        }
+        assert_eq!(status.code(), Some(130), "{said}");
+        // Without records no path is traced.
+        let pixels = image.rgb("").unwrap().pixels;
+        interrupted += u32::from(pixels.iter().flatten().all(|value| *value == 0.0));
+        folder.succeed(&format!("{line} --resume --threads 3"));
+        for kind in ["exr", "png"] {
+            let [part, whole] = ["part", "whole"].map(|name| folder.bytes(&format!("{name}.{kind}")));
+            assert!(part == whole, "{kind}, interrupted after {delay} ms");
+        }
+        assert_eq!(
+            folder.names(),
+            ["part.exr", "part.png", "scene.ron", "whole.exr", "whole.png"]
+        );
+    }
+    assert!(interrupted > 0, "the cache is filled too soon to be interrupted");
+}
+
+#[test]
+fn an_interrupted_audit_leaves_nothing_or_a_whole_map() {
+    let folder = Folder::with_scene(BALLS);
+    // While its own methods render, then while they fill their cache: nothing is known yet.
+    for own in ["--samples 4000000", CACHED] {
+        let line = format!("audit scene.ron -o map.exr -o map.png --budget 1h {own}");
+        let (status, said) = interrupt(&folder, &line, "-INT", Duration::from_millis(50));
+        assert_eq!(status.code(), Some(130), "{said}");
+        assert_eq!(folder.names(), ["scene.ron"], "{said}");
+    }
+    // While it traces: what is known by then is told.
+    let line = "audit scene.ron -o map.exr -o map.png --budget 1h --blocks 4";
+    let mut delay = Duration::from_millis(500);
+    loop {
+        let (status, said) = interrupt(&folder, line, "-INT", delay);
+        assert_eq!(status.code(), Some(130), "{said}");
+        if folder.names() != ["scene.ron"] {
+            break;
+        }
+        assert!(delay < PATIENCE, "nothing was traced");
+        delay *= 2;
+    }
+    assert_eq!(folder.names(), ["map.exr", "map.png", "scene.ron"]);
+    assert_whole_png(&folder.bytes("map.png"));
+    film::read_exr(&folder.path("map.exr")).unwrap();
+}
+
 #[test]
 fn termination_writes_the_image_too() {
     let folder = Folder::with_scene(BALLS);

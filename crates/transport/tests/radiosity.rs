@@ -116,7 +116,7 @@ fn solved(scene: &Scene, points: u32) -> PatchField {
     let mut field = place(scene, points);
     find_direct(scene, &mut field, &EXCHANGE, |_| true).expect("nobody stops it");
     let factors = factors(scene, &mut field);
-    let solution = factors.solve(&mut field, 0.01);
+    let solution = factors.solve(&mut field, 0.01, u32::MAX);
     assert!(solution.estimated <= 0.01 && solution.rounds > 1, "{solution:?}");
     field
 }
@@ -269,7 +269,7 @@ fn patches_and_form_factors_have_a_bound() {
     let nothing = scene_without_surfaces();
     let mut empty = place(&nothing, 100);
     assert!(empty.patches().is_empty());
-    factors(&nothing, &mut empty).solve(&mut empty, 0.01);
+    factors(&nothing, &mut empty).solve(&mut empty, 0.01, u32::MAX);
 }
 
 fn scene_without_surfaces() -> Scene {

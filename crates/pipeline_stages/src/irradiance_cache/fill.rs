@@ -79,7 +79,10 @@ impl CacheFill {
     fn next_level(&self, pixels: u64) -> (usize, u32) {
         let (turn, level) = (self.level / DEEP_RAYS.len(), self.level % DEEP_RAYS.len());
         if turn < RECORD_DEPTHS - 1 {
-            (RECORD_DEPTHS - 1 - turn, ((pixels / DEEP_RAYS[level]).isqrt() as u32).max(1))
+            (
+                RECORD_DEPTHS - 1 - turn,
+                ((pixels / DEEP_RAYS[level]).isqrt() as u32).max(1),
+            )
         } else {
             (0, STEPS[self.level + STEPS.len() - LEVELS])
         }

@@ -41,6 +41,8 @@ mod plan;
 mod reload;
 mod sample;
 mod sites;
+#[cfg(test)]
+mod tests;
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
@@ -76,6 +78,9 @@ pub struct IrradianceCache {
     /// Extrapolate records by the gradients of their light, and weigh them smoothly. Off: as irradiance caching was at first,
     /// with the harmonic mean for its metric, to compare.
     pub gradients: bool,
+    /// Ask whether a record can be seen from where it is used, and lies in the same plane. Off: records are used through walls and
+    /// around corners; shows what the test is for.
+    pub validity: bool,
     /// Least radius within which a record holds, in pixels. Higher makes fewer records in corners, and blurs them.
     #[reflect(@Range::closed(0.1, 100.0))]
     pub min_spacing: f32,
@@ -95,6 +100,7 @@ impl Default for IrradianceCache {
             min_weight: 10.0,
             cell_records: 8,
             gradients: true,
+            validity: true,
             min_spacing: 1.5,
             max_spacing: 40.0,
             incoming: IncomingLight::default(),

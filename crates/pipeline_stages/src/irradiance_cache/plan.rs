@@ -124,6 +124,7 @@ pub(super) fn plan_cache(
         cell_records: chosen.cell_records as usize,
         gradients: chosen.gradients,
         metric: metric.into(),
+        validity: chosen.validity,
     };
     let seen_spacing = Spacing {
         min_pixels: chosen.min_spacing,

@@ -5,7 +5,7 @@ use pipeline_core::record_items;
 use pipeline_data::{BuiltIrradianceCache, CameraFrame, RenderSettings, TransportScene};
 use radiometry::hash_u64;
 use rayon::prelude::*;
-use spatial::RecordOctree;
+use spatial::{Bounds, RecordOctree};
 use transport::Site;
 
 /// Camera rays that one task follows.
@@ -18,7 +18,7 @@ const MOST_RAYS: u32 = 1 << 20;
 const CELL_RECORDS: usize = 8;
 
 /// Places whose normals are closer than this cosine may do with one record.
-const SAME_NORMAL: f32 = 0.9;
+pub(super) const SAME_NORMAL: f32 = 0.9;
 
 /// Follows the camera rays of the wave to where the eye asks for indirect light.
 pub(super) fn find_sites(
@@ -71,7 +71,7 @@ pub(super) fn choose_sites(
         .collect();
     let most = (MOST_RAYS / plan.hemisphere.rays()).max(1) as usize;
     let spacing = plan.spacing[fill.depth].min_pixels.max(fill.step as f32);
-    let is_chosen = thin(&missing, spacing, most, &scene);
+    let is_chosen = thin(&missing, spacing, most, &scene.0.rays.bounds());
     let mut number = 0;
     fill.chosen.clear();
     missing.retain(|site| {
@@ -86,12 +86,12 @@ pub(super) fn choose_sites(
 }
 
 /// Which of the places get a record: greedily, at least `spacing` pixels apart, and at most `most`.
-fn thin(sites: &[Site], spacing: f32, most: usize, scene: &TransportScene) -> Vec<bool> {
+pub(super) fn thin(sites: &[Site], spacing: f32, most: usize, bounds: &Bounds) -> Vec<bool> {
     let mut order: Vec<u32> = (0..sites.len() as u32).collect();
     order.sort_unstable_by_key(|row| (hash_u64(u64::from(*row)), *row));
     let mut is_chosen = vec![false; sites.len()];
     let mut taken: Vec<u32> = Vec::new();
-    let mut octree = RecordOctree::new(&scene.0.rays.bounds(), CELL_RECORDS);
+    let mut octree = RecordOctree::new(bounds, CELL_RECORDS);
     for row in order {
         if taken.len() >= most {
             break;

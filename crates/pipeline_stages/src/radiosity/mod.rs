@@ -13,8 +13,8 @@
 //!
 //! Limits: surfaces that move carry no patches, neither reflect light to others, and are seen by a few rays instead. D lobes
 //! that are not Lambertian send their light alike to all sides. Alpha lets light through as it does for all rays. Light over
-//! S surfaces onto patches is found by chance, as a tracer finds it: a small lamp behind glass makes spots. The solution
-//! holds reflections without end, whatever `Render.max_depth` says.
+//! S surfaces onto patches is found by chance, as a tracer finds it: a small lamp behind glass makes spots.
+//! `Render.max_depth` is counted from patches that the eye sees straight; S surfaces before them do not count.
 //! Sources: see `transport::radiosity`.
 
 mod look_up;

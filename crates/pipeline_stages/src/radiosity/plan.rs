@@ -3,13 +3,15 @@ use bevy_ecs::prelude::*;
 use pipeline_data::vocabulary::{Findings, SceneReport, component_place};
 use pipeline_data::{PatchDemand, PrimIndex, RenderSettings, SolvedPatches};
 use scene_format::Diagnostic;
-use transport::IndirectMethod;
+use transport::{IndirectMethod, Methods};
 
 /// How radiosity is solved. Written by `plan_radiosity`; present where it is.
 #[derive(Resource, Clone, Debug)]
 pub(super) struct RadiosityPlan {
     pub(super) settings: Radiosity,
     pub(super) seed: u64,
+    /// Most that light makes on patches.
+    pub(super) reflections: u32,
 }
 
 /// Takes up the settings, where somebody wants the solution.
@@ -46,6 +48,21 @@ pub(super) fn plan_radiosity(
         commands.insert_resource(RadiosityPlan {
             settings: chosen,
             seed: settings.seed,
+            reflections: reflections(&settings.methods),
         });
+    }
+}
+
+/// The reflections that are left to patches: one is at the surface that the eye sees, and one more where gather rays end
+/// on patches, whose own is not counted here.
+fn reflections(methods: &Methods) -> u32 {
+    let outside = if methods.indirect == IndirectMethod::Radiosity {
+        1
+    } else {
+        2
+    };
+    match methods.max_depth {
+        u32::MAX => u32::MAX,
+        most => most.saturating_sub(outside),
     }
 }

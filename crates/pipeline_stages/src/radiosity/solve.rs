@@ -1,7 +1,7 @@
 use super::plan::RadiosityPlan;
 use bevy_ecs::prelude::*;
 use pipeline_core::{Cancellation, Counters, Progress, RenderClock, record_items};
-use pipeline_data::vocabulary::{Findings, SceneReport, field_place};
+use pipeline_data::vocabulary::{Findings, SceneReport, component_place, field_place};
 use pipeline_data::{RenderSettings, SolvedPatches, TransportScene};
 use scene_format::Diagnostic;
 use transport::{ExchangeError, ExchangeSettings, PatchField, PlaceError, PlaceSettings, Scene};
@@ -36,6 +36,7 @@ pub(super) fn solve_radiosity(
         Ok(field) => field,
         Err(refusal) => return refuse(&mut report, settings.render_prim, *refusal),
     };
+    tell_of_motion(&scene.0, &mut report, settings.render_prim);
     if clock.check_only || clock.photons_only {
         return;
     }
@@ -67,7 +68,7 @@ pub(super) fn solve_radiosity(
             return refuse(&mut report, settings.render_prim, refusal);
         }
     };
-    let solution = factors.solve(&mut field, f64::from(plan.settings.tolerance));
+    let solution = factors.solve(&mut field, f64::from(plan.settings.tolerance), plan.reflections);
     record_items(patches);
     counters.counter("radiosity/patches").add(patches as u64);
     counters.counter("radiosity/form factors").add(factors.len() as u64);
@@ -95,6 +96,22 @@ fn place(scene: &Scene, plan: &RadiosityPlan) -> Result<PatchField, Box<Diagnost
             .note("are all places and sizes finite?"),
     };
     PatchField::place(scene, &settings).map_err(|error| Box::new(refusal(error)))
+}
+
+/// Tells of surfaces that the solution leaves out.
+fn tell_of_motion(scene: &Scene, report: &mut SceneReport<'_>, render_prim: u32) {
+    let moves = |i: &u32| scene.rays.instance_moves(*i) && scene.material_of(*i).has_diffuse();
+    let moving = (0..scene.rays.instance_count() as u32).filter(moves).count();
+    if moving == 0 {
+        return;
+    }
+    let message = format!("{moving} diffuse surfaces move; radiosity lays no patches over them, so they light nothing");
+    let warning = Diagnostic::warning("moving-surfaces", message)
+        .note("`LightTransport.indirect: PathTrace` or `IrradianceCache` know the light that they reflect");
+    let mut findings = Findings::default();
+    let place = component_place(report.scene(), render_prim, "Radiosity");
+    findings.push_at(place, warning);
+    report.file(findings);
 }
 
 /// Reports an error at the size of patches.

@@ -13,6 +13,8 @@ pub struct CacheSettings {
     pub gradients: bool,
     /// How ranges are found.
     pub metric: ErrorMetric,
+    /// Whether records are asked if they hold behind walls and around corners, too; else they are taken to.
+    pub validity: bool,
 }
 
 /// Extrapolated records are read so many times further than where no other is made beside them. Their weights fall smoothly, so

@@ -32,8 +32,15 @@ impl IrradianceCache {
     pub fn covers(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> bool {
         let candidates = self.octree.candidates(position);
         candidates.map(|row| &self.records[row as usize]).any(|record| {
-            error_at(record, position, normal, self.settings.min_weight).is_some()
-                && (record.is_clear(position) || sees(record))
+            error_at(
+                record,
+                position,
+                normal,
+                self.settings.min_weight,
+                self.settings.validity,
+            )
+            .is_some()
+                && (!self.settings.validity || record.is_clear(position) || sees(record))
         })
     }
 
@@ -59,10 +66,10 @@ impl IrradianceCache {
         let records = self.octree.candidates(position).map(|row| &self.records[row as usize]);
         let (mut sum, mut weights, mut record_density) = (Rgb::BLACK, 0.0, 0.0);
         for record in records {
-            let Some(error) = error_at(record, position, normal, min_weight) else {
+            let Some(error) = error_at(record, position, normal, min_weight, self.settings.validity) else {
                 continue;
             };
-            if !record.is_clear(position) && !sees(record) {
+            if self.settings.validity && !record.is_clear(position) && !sees(record) {
                 continue;
             }
             let (value, weight) = if self.settings.gradients {
@@ -86,8 +93,15 @@ impl IrradianceCache {
 /// ε/a of a record at a place, in [0, 1); `None` where the record does not hold.
 ///
 /// - `min_weight`: 1/a.
+/// - `in_plane`: whether the place has to lie in the plane of the record.
 #[inline]
-pub(super) fn error_at(record: &IrradianceRecord, position: Vec3, normal: Vec3, min_weight: f32) -> Option<f32> {
+pub(super) fn error_at(
+    record: &IrradianceRecord,
+    position: Vec3,
+    normal: Vec3,
+    min_weight: f32,
+    in_plane: bool,
+) -> Option<f32> {
     let min_weight = min_weight.max(1.0);
     let step = position - record.position;
     let (range, distance_sq) = (record.effective_range(), step.length_squared());
@@ -99,7 +113,7 @@ pub(super) fn error_at(record: &IrradianceRecord, position: Vec3, normal: Vec3, 
     let error = (distance_sq.sqrt() / range + turned) * min_weight;
     let height = 0.5 * step.dot(normal + record.normal);
     let tolerance = FRONT_TOLERANCE * reach + 4.0 * f32::EPSILON * position.abs().max_element();
-    (error < 1.0 && height.abs() <= tolerance).then_some(error)
+    (error < 1.0 && (!in_plane || height.abs() <= tolerance)).then_some(error)
 }
 
 impl IrradianceRecord {

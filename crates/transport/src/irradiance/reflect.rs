@@ -16,6 +16,9 @@ const REFLECT_STAGE: StageKey = StageKey::new("irradiance_cache/reflectance");
 const DEEP_STAGE: StageKey = StageKey::new("irradiance_cache/deep");
 
 /// D lobes with a smaller GGX width than this show what is around in too much detail for irradiance to tell; they are traced.
+///
+/// Metal in a small room, relMSE of the indirect light: by records 0.0040 at 0.4 and 0.0014 at 0.6, however many the samples;
+/// traced 0.0061 at 0.2 and 0.0035 at 0.3, of 64 samples. Paint under such a coat: 0.0007 and 0.0006 by records.
 const SHARPEST_ALPHA: f32 = 0.4;
 
 /// Way over a surface on which a place and a record look at each other, in distances between the two.

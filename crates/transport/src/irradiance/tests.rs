@@ -155,6 +155,7 @@ const SETTINGS: CacheSettings = CacheSettings {
     cell_records: 8,
     gradients: true,
     metric: ErrorMetric::HarmonicMean,
+    validity: true,
 };
 
 fn record(position: Vec3, range: f32, irradiance: f32) -> IrradianceRecord {

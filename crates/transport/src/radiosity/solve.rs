@@ -60,13 +60,16 @@ impl FormFactors {
     /// rounds to come would add follows from how much less each adds than the one before, a geometric series in the end;
     /// that estimate is added where the last round added, and only its own error, a small part of it, stays.
     ///
+    /// - `reflections`: most that light makes on patches; `u32::MAX` for any number.
+    ///
     /// Cost: one multiplication a link and round. Sums have a fixed order, so threads change no bit.
-    pub fn solve(&self, field: &mut PatchField, tolerance: f64) -> Solution {
+    pub fn solve(&self, field: &mut PatchField, tolerance: f64, reflections: u32) -> Solution {
         let mut added_before = f64::INFINITY;
         for patch in &mut field.patches {
             patch.indirect = Rgb::BLACK;
         }
-        for round in 1..=MOST_ROUNDS {
+        let rounds = reflections.min(MOST_ROUNDS);
+        for round in 1..=rounds {
             let sent: Vec<Rgb> = field.patches.par_iter().map(sent).collect();
             let arrived: Vec<Rgb> = (0..field.patches.len())
                 .into_par_iter()
@@ -85,7 +88,7 @@ impl FormFactors {
             let added = (total - before).max(0.0);
             let ratio = added / added_before;
             let rest = if ratio < 1.0 {
-                ratio / (1.0 - ratio)
+                ratio / (1.0 - ratio) * (1.0 - kept(ratio, reflections - round))
             } else {
                 f64::INFINITY
             };
@@ -106,10 +109,16 @@ impl FormFactors {
             }
             added_before = added;
         }
-        Solution {
-            rounds: MOST_ROUNDS,
-            estimated: 0.0,
-        }
+        Solution { rounds, estimated: 0.0 }
+    }
+}
+
+/// What is left of light after so many more reflections.
+fn kept(ratio: f64, reflections: u32) -> f64 {
+    if reflections < MOST_ROUNDS {
+        std::iter::repeat_n(ratio, reflections as usize).product()
+    } else {
+        0.0
     }
 }
 
