@@ -57,12 +57,15 @@ const METHODS: [Method; 4] = [
         mean_bias: 0.012,
         block_bias: 0.03,
     },
-    // Interpolation blurs what changes within the spacing of records, in corners and at contacts.
+    // Interpolation blurs what changes within the spacing of records, in corners and at contacts. That is a matter of pixels, which
+    // are large here.
     Method {
         name: "records",
         fields: &[
             "/Render.LightTransport.indirect=IrradianceCache",
             "/Render.IrradianceCache.rays=256",
+            "/Render.IrradianceCache.min_weight=20",
+            "/Render.IrradianceCache.min_spacing=0.5",
         ],
         samples: "16",
         mean_bias: 0.003,

@@ -198,7 +198,7 @@ fn audits_find_records_that_are_used_through_a_wall() {
     assert_eq!(found, TRIALS[1] as usize);
 }
 
-/// Gradients against the plain form, at as many records.
+/// Gradients against the plain form, at as many records: both find ranges by the harmonic mean.
 #[test]
 fn gradients_lower_the_error_of_as_many_records() {
     /// What the numbers of records may differ by: each form decides by itself how far a record holds.
@@ -215,7 +215,14 @@ fn gradients_lower_the_error_of_as_many_records() {
         let folder = tempfile::tempdir().expect("a folder for the profile");
         let profile = file(&folder, "profile.json");
         let form = format!("/Render.IrradianceCache.gradients={gradients}");
-        let fields = [dark, CACHE, RAYS, "/Render.IrradianceCache.min_weight=5", &form];
+        let fields = [
+            dark,
+            CACHE,
+            RAYS,
+            "/Render.IrradianceCache.min_weight=5",
+            "/Render.IrradianceCache.metric=HarmonicMean",
+            &form,
+        ];
         let image = render(
             &scene("cornell"),
             &[&size[..], &["--samples", "64", "--profile", &profile]].concat(),

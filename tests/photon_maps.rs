@@ -322,5 +322,8 @@ fn the_figures_of_the_lecture_render() {
         assert!(light > 0.001, "{}: {light}", path.display());
         count += 1;
     }
-    assert_eq!(count, 9, "one scene that is traced, and the eight figures of photons");
+    assert_eq!(
+        count, 14,
+        "one scene that is traced, eight figures of photons, and five of records"
+    );
 }

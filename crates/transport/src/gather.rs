@@ -265,8 +265,8 @@ fn what_is_reflected(
             _ => (Known::Nothing, Rgb::BLACK),
         },
         Incoming::Records(cache) => match reflect_irradiance(scene, cache, path, time, vertex) {
-            CacheAnswer::Light { radiance, .. } => (Known::Indirect, radiance),
-            CacheAnswer::Missing | CacheAnswer::Unsuited => (Known::Nothing, Rgb::BLACK),
+            CacheAnswer::Light { radiance, blur, .. } if length > blur => (Known::Indirect, radiance),
+            _ => (Known::Nothing, Rgb::BLACK),
         },
     }
 }

@@ -127,7 +127,6 @@ impl From<CausticMethod> for transport::CausticMethod {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum IndirectMethod {
     /// Paths that go on from surface to surface.
-    #[default]
     PathTrace,
     /// Photons that came over matt surfaces, seen directly: fast, and blotchy with few photons.
     PhotonMap,
@@ -136,6 +135,7 @@ pub enum IndirectMethod {
     /// Light exchanged between patches of all matt surfaces, solved once: smooth, and without small shadows.
     Radiosity,
     /// Irradiance computed well at few places and interpolated between them: smooth, and fast where light changes slowly.
+    #[default]
     IrradianceCache,
     /// Not at all.
     Off,

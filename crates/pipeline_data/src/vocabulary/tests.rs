@@ -18,7 +18,7 @@ DistantLight    | irradiance (1, 1, 1) | angle 0.53
 Emission        | radiance (1, 1, 1) | power ? | two_sided false
 EnvironmentLight | file ? | radiance (1, 1, 1) | scale 1
 Film            | resolution (512, 512) | filter BlackmanHarris | filter_radius 1.5 | variance true | exposure 0 | tone_map Filmic
-LightTransport  | direct SampleLights | specular Trace | caustic PhotonMap | indirect PathTrace | specular_alpha 0.05
+LightTransport  | direct SampleLights | specular Trace | caustic PhotonMap | indirect IrradianceCache | specular_alpha 0.05
 LookAt          | target - | up (0, 1, 0)
 MaterialBinding | target -
 Mesh            | file - | mesh ? | primitive ? | smooth true | colors true

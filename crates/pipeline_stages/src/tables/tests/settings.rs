@@ -39,7 +39,7 @@ fn settings_come_from_the_render_prim() {
     );
     assert_eq!(
         (plain.methods.caustic, plain.methods.indirect),
-        (CausticMethod::PhotonMap, IndirectMethod::PathTrace)
+        (CausticMethod::PhotonMap, IndirectMethod::IrradianceCache)
     );
 }
 
