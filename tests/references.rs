@@ -21,11 +21,16 @@ fn scene(name: &str) -> PathBuf {
 
 /// Renders a reference scene and reads the image back.
 fn render(name: &str, label: &str, arguments: &[&str]) -> ExrImage {
+    render_file(&scene(name).join("scene.ron"), name, label, arguments)
+}
+
+/// The same of any scene file.
+fn render_file(scene: &Path, name: &str, label: &str, arguments: &[&str]) -> ExrImage {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
     let output = folder.join(format!("{name}-{label}.exr"));
     let status = Command::new(env!("CARGO_BIN_EXE_pipeline"))
         .arg("run")
-        .arg(scene(name).join("scene.ron"))
+        .arg(scene)
         .args(["--quiet", "-o"])
         .arg(&output)
         .args(arguments)
@@ -188,6 +193,32 @@ fn irradiance_cache_meets_the_reference_on_cornell() {
         "cornell-cached",
         means && off.within(CACHED_BLOCKS),
         &image,
+        &reference,
+        &found_text,
+    );
+}
+
+/// The scene that the README shows, with its own settings, against path tracing.
+#[test]
+#[ignore = "takes minutes; .ci/full runs it"]
+fn irradiance_cache_meets_the_reference_on_the_interior() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/interior.ron");
+    let image = render_file(
+        &path,
+        "interior",
+        "cached",
+        &["--resolution", "320x200", "--samples", "64"],
+    );
+    let (blocks, reference) = (block_means(&beauty(&image), 8), stored("interior", "blocks.exr"));
+    let found = compare(&blocks, &reference, 0).expect("same size");
+    let off = Quantiles::of(&blocks, &reference);
+    let found_text = format!("{off}; means off by {:?}", found.relative_difference);
+    println!("interior, cached: {found_text}");
+    let means = found.relative_difference.iter().all(|d| d.abs() < MEANS);
+    assert_alike(
+        "interior-cached",
+        means && off.within(CACHED_BLOCKS),
+        &blocks,
         &reference,
         &found_text,
     );
