@@ -53,7 +53,8 @@ impl IrradianceCache {
     /// [`CacheSettings::read_weight`](super::CacheSettings::read_weight). Without gradients `w_j = 1/ε_j − 1/a`. Both fall to zero where a record ends, so that its end does not show.
     ///
     /// Source: Ward, Rubinstein and Clear 1988; Ward and Heckbert 1992. Differs: a weight that is smooth at the record as
-    /// well, so that the noise of no single record shows (a cone: Tabellion and Lamorlette, SIGGRAPH 2004).
+    /// well, so that the noise of no single record shows (a cone: Tabellion and Lamorlette, SIGGRAPH 2004), and less of it where the
+    /// range is widened to the least, so that what is dark at a contact does not spread.
     ///
     /// - `normal`, `sees`: as for [`IrradianceCache::covers`].
     #[inline]
@@ -76,7 +77,7 @@ impl IrradianceCache {
             }
             let (value, weight) = if self.settings.gradients {
                 let rest = 1.0 - error * error;
-                (record.extrapolate(position, normal), rest * rest)
+                (record.extrapolate(position, normal), rest * rest * record.trust())
             } else {
                 (record.irradiance, 1.0 / error.max(LEAST_ERROR) - 1.0)
             };
@@ -128,23 +129,18 @@ impl IrradianceRecord {
         self.position.distance_squared(position) < clear * clear
     }
 
-    /// True where the range counts as more than was found.
+    /// How much of the range that counts was found; below one where it is widened to the least.
     #[inline]
-    fn is_widened(&self) -> bool {
-        self.range < self.least_range
+    fn trust(&self) -> f32 {
+        (self.range / self.effective_range()).min(1.0)
     }
 
     /// E at another place and normal, linear.
     #[inline]
     fn extrapolate(&self, position: Vec3, normal: Vec3) -> Rgb {
         // Where the range is widened, a linear change would end too early.
-        let trust = if self.is_widened() {
-            self.range / self.least_range
-        } else {
-            1.0
-        };
         let turned = self.rotation.along(self.normal.cross(normal));
-        let moved = self.translation.along((position - self.position) * trust);
+        let moved = self.translation.along((position - self.position) * self.trust());
         (self.irradiance + turned + moved).map(|channel| channel.max(0.0))
     }
 }
