@@ -106,7 +106,7 @@ fn insert(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Not a time: what a record takes, beside the 124 bytes of its entity.
+/// Not a time: what a record takes, beside the 128 bytes of its entity.
 fn memory(_: &mut Criterion) {
     for count in SIZES {
         let cache = filled(&records(count));

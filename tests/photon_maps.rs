@@ -324,6 +324,6 @@ fn the_figures_of_the_lecture_render() {
     }
     assert_eq!(
         count, 14,
-        "one scene that is traced, eight figures of photons, and five of records"
+        "two scenes that are traced, eight figures of photons, and four of records"
     );
 }

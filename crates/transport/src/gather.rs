@@ -78,6 +78,21 @@ impl GatherMethods {
         }
     }
 
+    /// With paths that may have so many events fewer, for what is seen from after them.
+    #[must_use]
+    pub fn after(self, events: u32) -> Self {
+        let less = |methods: Methods| Methods {
+            max_depth: methods.max_depth.saturating_sub(events),
+            ..methods
+        };
+        Self {
+            shallow: less(self.shallow),
+            deep: less(self.deep),
+            told: less(self.told),
+            ..self
+        }
+    }
+
     /// With so many lights sampled at the first D vertex of a ray, at least 1: a ray that is one of a stratum of its own has noise of
     /// which light was chosen, and little else.
     #[must_use]
@@ -191,6 +206,7 @@ pub(crate) fn light_along(
         };
         let is_read = known == Known::All;
         if !is_read {
+            let lights = if reflects { lights } else { 1 };
             for number in 0..lights {
                 let path = Path {
                     throughput: path.throughput * (1.0 / lights as f32),

@@ -1,7 +1,8 @@
+use super::plan::CachePlan;
 use bevy_ecs::prelude::*;
 use glam::{UVec2, Vec2};
-use pipeline_core::{Progress, record_items};
-use pipeline_data::{CameraFrame, RECORD_DEPTHS, RenderSettings};
+use pipeline_core::{Progress, RenderClock, record_items};
+use pipeline_data::{CameraFrame, ProgressivePasses, RECORD_DEPTHS, RenderSettings};
 use radiometry::{SampleStream, StageKey};
 use spatial::Ray;
 use transport::{IrradianceRecord, Path, Site};
@@ -27,8 +28,10 @@ const WAVE_RAYS: u32 = 1 << 16;
 /// How far the filling of the cache is. Present while it goes on.
 #[derive(Resource, Debug, Default)]
 pub(super) struct CacheFill {
-    /// Of the render whose photons are read; 0 without.
+    /// Pass of the render whose photons are read; 0 where they are the same in all.
     pub(super) generation: u32,
+    /// Whether records of an earlier pass were dropped for these.
+    pub(super) is_renewed: bool,
     /// Of the next wave: the deepest records come first.
     pub(super) level: usize,
     /// Of the records of this wave.
@@ -47,16 +50,18 @@ pub(super) struct CacheFill {
     pub(super) sampled: Vec<IrradianceRecord>,
     /// Number of the next record, by depth.
     pub(super) next_number: [u32; RECORD_DEPTHS],
+    /// Of the random numbers of the next record, by depth: those that were refused have had some, too.
+    pub(super) next_stream: [u32; RECORD_DEPTHS],
     /// Number of the first record that is made here, by depth; those before it come from a file.
     pub(super) first_number: [u32; RECORD_DEPTHS],
 }
 
 impl CacheFill {
     /// - `is_deep`: whether records of all depths are asked for, or only those that the eye reads.
-    /// - `generation`: see [`CacheFill::generation`].
-    pub(super) fn new(is_deep: bool, generation: u32) -> Self {
+    /// - `is_renewed`: see [`CacheFill::is_renewed`].
+    pub(super) fn new(is_deep: bool, is_renewed: bool) -> Self {
         Self {
-            generation,
+            is_renewed,
             level: if is_deep { 0 } else { LEVELS - STEPS.len() },
             ..Self::default()
         }
@@ -70,6 +75,7 @@ impl CacheFill {
         Self {
             level: if is_complete { LEVELS } else { self.level },
             next_number: records,
+            next_stream: records,
             first_number: records,
             ..self
         }
@@ -100,10 +106,19 @@ pub(super) fn generate_rays(
     settings: Res<RenderSettings>,
     camera: Res<CameraFrame>,
     progress: Res<Progress>,
+    plan: Res<CachePlan>,
+    (clock, passes): (Res<RenderClock>, Option<Res<ProgressivePasses>>),
 ) {
     let fill = &mut *fill;
-    if fill.step == 0 && fill.generation == 0 {
-        progress.start("records", "levels", LEVELS as u64);
+    if fill.step == 0 {
+        // The pass is that of the render, so that one that was resumed has the same records.
+        if plan.reads_photons && passes.is_some() {
+            fill.generation = (clock.waves_done / clock.waves_per_pass.max(1)) as u32;
+        }
+        if !fill.is_renewed {
+            progress.start("records", "levels", LEVELS as u64);
+            progress.set_done(fill.level as u64);
+        }
     }
     if !fill.missing.is_empty() || fill.is_over() {
         return;
@@ -129,7 +144,7 @@ pub(super) fn generate_rays(
     if end == cells.x * cells.y {
         fill.next_cell = 0;
         fill.level += 1;
-        if fill.generation == 0 {
+        if !fill.is_renewed {
             progress.set_done(fill.level as u64 - 1);
         }
     }

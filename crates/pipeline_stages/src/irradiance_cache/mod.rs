@@ -16,8 +16,9 @@
 //! on its number alone, so the image is the same whatever the threads.
 //!
 //! Rays of records do not go on as paths: where they end they read deeper records, sparse and wide, for the light of further
-//! reflections, which then has the noise of their mean, not that of a single path. Deep records lie where rays of others end,
-//! behind the camera as well, and are made first: the deepest of paths to the end, those of the next depth by reading them. The eye
+//! reflections, which then has the noise of their mean, not that of a single path. Deep records lie where rays of those
+//! that the eye reads end, behind the camera as well, and are made first: the deepest of paths to the end, those of the next depth by
+//! reading them. The eye
 //! reads none of them.
 //!
 //! Records can be kept in a file (`pipeline records`, `run --records`). Two keys say what they are worth elsewhere: one of their
@@ -28,8 +29,8 @@
 //! What the cache is not asked, and what no record tells of, is traced: glossy D lobes, normal maps, things that move,
 //! and places that only a lens or a moment shows. The cache is filled through a pinhole, at random moments.
 //!
-//! Limits: light that changes faster than records follow is blurred, as shadows of indirect light at contacts. `max_depth` is
-//! counted from the record. Records that read progressive photon maps are new in every pass and cannot be kept. The records of a
+//! Limits: light that changes faster than records follow is blurred, as shadows of indirect light at contacts. `max_depth` does not
+//! count mirrors on the way to a record. Records that read progressive photon maps are new in every pass and cannot be kept. The records of a
 //! crop are not those of the whole picture.
 //! Source: see [`transport::IrradianceCache`].
 
@@ -133,7 +134,7 @@ impl From<ErrorMetric> for transport::ErrorMetric {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Default)]
 pub enum IncomingLight {
-    /// Paths with light sampling, which read the records that there are already for light of further reflections.
+    /// Paths with light sampling, which read deeper records for light of further reflections.
     #[default]
     PathTrace,
     /// The photon maps, as in final gathering.

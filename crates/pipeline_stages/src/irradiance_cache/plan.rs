@@ -12,8 +12,8 @@ use transport::{CacheSettings, GatherMethods, Hemisphere, IndirectMethod, MapKin
 /// 1/a of deep records: few that hold far.
 const DEEP_MIN_WEIGHT: f32 = 5.0;
 
-/// Least radius within which a deep record holds, in pixels.
-const DEEP_SPACING: f32 = 16.0;
+/// Least radius within which a deep record holds, in sides of the film: it is of the scene, whatever the pixels.
+const DEEP_SPACING: f32 = 0.02;
 
 /// Lights that are sampled where the ray of a record ends.
 const LIGHTS: u32 = 4;
@@ -26,8 +26,8 @@ pub(super) struct CachePlan {
     pub(super) settings: [CacheSettings; RECORD_DEPTHS],
     /// By depth.
     pub(super) spacing: [Spacing; RECORD_DEPTHS],
-    /// Of the rays of records.
-    pub(super) methods: GatherMethods,
+    /// Of the rays of records, by depth.
+    pub(super) methods: [GatherMethods; RECORD_DEPTHS],
     pub(super) reads_photons: bool,
 }
 
@@ -42,8 +42,8 @@ impl CachePlan {
     }
 
     /// A filling that begins. Where photons tell what deep records would, there are none.
-    pub(super) fn new_fill(&self, generation: u32) -> CacheFill {
-        CacheFill::new(!self.reads_photons, generation)
+    pub(super) fn new_fill(&self, is_renewed: bool) -> CacheFill {
+        CacheFill::new(!self.reads_photons, is_renewed)
     }
 }
 
@@ -131,33 +131,34 @@ pub(super) fn plan_cache(
         max_pixels: chosen.max_spacing,
         most: scene.0.rays.bounds().diagonal().max(f32::MIN_POSITIVE),
     };
-    // Distances alone decide how far deep records hold: those have no noise.
+    // Distances decide how far deep records hold, which have less noise than what they hold.
     let deep = CacheSettings {
         min_weight: DEEP_MIN_WEIGHT,
         metric: transport::ErrorMetric::HarmonicMean,
         ..seen
     };
     let deep_spacing = Spacing {
-        min_pixels: DEEP_SPACING,
+        min_pixels: DEEP_SPACING * settings.resolution.as_vec2().element_product().sqrt(),
         max_pixels: f32::MAX,
         ..seen_spacing
     };
+    let methods = GatherMethods::new(&settings.methods, reads_photons).with_lights(LIGHTS);
     let plan = CachePlan {
         hemisphere: Hemisphere::of_rays(chosen.rays),
         settings: [seen, deep, deep],
         spacing: [seen_spacing, deep_spacing, deep_spacing],
-        methods: GatherMethods::new(&settings.methods, reads_photons).with_lights(LIGHTS),
+        methods: std::array::from_fn(|depth| methods.after(depth as u32)),
         reads_photons,
     };
     commands.insert_resource(plan);
-    begin(&mut commands, &plan, &scene, 0);
+    begin(&mut commands, &plan, &scene, false);
     clock.records_pending = 1;
 }
 
 /// Asks for records, the caches as empty as at first.
-fn begin(commands: &mut Commands<'_, '_>, plan: &CachePlan, scene: &TransportScene, generation: u32) {
+fn begin(commands: &mut Commands<'_, '_>, plan: &CachePlan, scene: &TransportScene, is_renewed: bool) {
     commands.insert_resource(plan.empty_cache(scene));
-    commands.insert_resource(plan.new_fill(generation));
+    commands.insert_resource(plan.new_fill(is_renewed));
 }
 
 /// True when photons have landed that records read, and there are records that read others.
@@ -178,8 +179,6 @@ pub(super) fn renew_records(
     mut clock: ResMut<RenderClock>,
 ) {
     records.iter().for_each(|record| commands.entity(record).despawn());
-    // The pass is that of the render, so that one that was resumed has the same records.
-    let pass = (clock.waves_done / clock.waves_per_pass.max(1)) as u32;
-    begin(&mut commands, &plan, &scene, pass);
+    begin(&mut commands, &plan, &scene, true);
     clock.records_pending += 1;
 }

@@ -56,7 +56,7 @@ pub(super) fn reload_records(
                     let counts = cache.0.each_ref().map(|cache| cache.records().len() as u32);
                     let reused = counts.iter().map(|count| u64::from(*count)).sum();
                     counters.counter("irradiance_cache/reused").add(reused);
-                    commands.insert_resource(plan.new_fill(0).after(counts, is_complete));
+                    commands.insert_resource(plan.new_fill(false).after(counts, is_complete));
                     commands.spawn_batch(entities_of(&cache));
                     commands.insert_resource(cache);
                 }

@@ -35,13 +35,13 @@ pub(super) fn sample_records(
     let filled = &cache.0[fill.depth];
     let rays = RecordRays {
         seed: settings.seed,
-        methods: plan.methods,
+        methods: plan.methods[fill.depth],
         maps: plan
             .reads_photons
             .then(|| built.as_ref().map_or(&empty, |built| &built.0)),
         cache: cache.0.get(fill.depth + 1),
     };
-    let next = u64::from(fill.next_number[fill.depth]);
+    let next = u64::from(fill.next_stream[fill.depth]);
     let first = next | u64::from(fill.generation) << 32 | (fill.depth as u64) << 62;
     let record = |(i, site): (usize, &Site)| -> Option<IrradianceRecord> {
         let samples: Vec<HemisphereSample> = (0..hemisphere.rings())
@@ -64,5 +64,7 @@ pub(super) fn sample_records(
     let count = chosen.len() * hemisphere.rays() as usize;
     record_items(count);
     counter.0.add(count as u64);
+    let depth = fill.depth;
+    fill.next_stream[depth] += chosen.len() as u32;
     fill.sampled = sampled.into_iter().flatten().collect();
 }

@@ -42,12 +42,10 @@ pub(super) fn rotational(hemisphere: &Hemisphere, samples: &[HemisphereSample]) 
 /// Noise makes gradients longer: of the square of the length, what the spread of samples within cells would make by itself is taken
 /// off, `∇_t E · max(0, 1 − σ²/|∇_t E|²)`.
 ///
-/// Source: Ward and Heckbert, "Irradiance Gradients", EGWR 1992. Differs: by strata that are joined before they are compared, and by the noise.
-///
-/// - `samples`: ring by ring.
-pub(super) fn translational(hemisphere: &Hemisphere, samples: &[HemisphereSample]) -> RgbGradient {
+/// Source: Ward and Heckbert, "Irradiance Gradients", EGWR 1992. Differs: by strata that are joined before they are compared, and by
+/// the noise.
+pub(super) fn translational(hemisphere: &Hemisphere, strata: &Strata) -> RgbGradient {
     let (rings, cells) = (hemisphere.rings(), hemisphere.cells());
-    let strata = Strata::new(hemisphere, samples);
     let (along_theta, along_phi) = (&strata.along_theta, &strata.along_phi);
     let sin_sq = |ring: u32| ring as f32 / rings as f32;
     let angle = |cell: f32| math::sin_cos(TAU * cell / cells as f32);

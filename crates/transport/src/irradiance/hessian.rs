@@ -1,5 +1,4 @@
 use super::strata::Strata;
-use super::{Hemisphere, HemisphereSample};
 use glam::{Vec2, Vec3};
 use radiometry::math;
 
@@ -16,16 +15,17 @@ use radiometry::math;
 /// Source: Schwarzhaupt, Wann Jensen and Jarosz, "Practical Hessian-Based Error Control for Irradiance Caching", SIGGRAPH Asia
 /// 2012. Differs: by strata that are joined before they are compared, and by the noise.
 ///
-/// - `samples`: ring by ring.
-pub(super) fn curvature(hemisphere: &Hemisphere, samples: &[HemisphereSample]) -> f32 {
-    let strata = Strata::new(hemisphere, samples);
-    let net = Net::new(&strata);
+/// - returns a finite number, 0 where there is nothing but noise.
+pub(super) fn curvature(strata: &Strata) -> f32 {
     let (mut sum, mut noise_sq) = (Second::default(), 0.0);
-    for (weight, cell) in net.weights().iter().zip(&strata.cells) {
+    for (weight, cell) in weights(strata).iter().zip(&strata.cells) {
         sum = sum.plus(weight, cell.light.mean());
         noise_sq += weight.size_sq() * cell.variance;
     }
-    (sum.size_sq() - noise_sq).max(0.0).sqrt()
+    let square = sum.size_sq() - noise_sq;
+    // What is too much to be counted is as much as there can be.
+    let square = if square.is_nan() { f32::MAX } else { square };
+    square.clamp(0.0, f32::MAX).sqrt()
 }
 
 /// A corner of a triangle: where joined strata have met something, in the frame of the normal.
@@ -37,59 +37,44 @@ struct Corner {
     cell: usize,
 }
 
-/// The triangles between what the rays of a hemisphere have met.
-struct Net<'a> {
-    strata: &'a Strata,
-}
-
-impl<'a> Net<'a> {
-    fn new(strata: &'a Strata) -> Self {
-        Self { strata }
-    }
-
-    /// What the radiance of each joined stratum counts in the second derivative of irradiance.
-    fn weights(&self) -> Vec<Second> {
-        let mut weights = vec![Second::default(); self.strata.cells.len()];
-        let (rings, columns) = (self.strata.rings(), self.strata.columns());
-        for column in 0..columns {
-            let next = (column + 1) % columns;
-            let mut inner = [self.pole(column), self.pole(column)];
-            // Ring by ring outwards, and from the last one down to the plane of the surface.
-            for ring in 0..=rings {
-                let outer = [column, next].map(|column| self.corner(ring, column));
-                if ring > 0 {
-                    add(&mut weights, [inner[0], outer[1], inner[1]]);
-                }
-                add(&mut weights, [inner[0], outer[0], outer[1]]);
-                inner = outer;
-            }
-        }
-        weights
-    }
-
-    /// The middle of the hemisphere, which has the radiance of the innermost stratum on its side.
-    fn pole(&self, column: usize) -> Corner {
-        let columns = self.strata.columns();
-        let near: f32 = (0..columns).map(|column| self.strata.cell(0, column).near).sum();
-        let distance = columns as f32 / near.max(FURTHEST);
-        Corner {
+/// What the radiance of each joined stratum counts in the second derivative of irradiance.
+fn weights(strata: &Strata) -> Vec<Second> {
+    let mut weights = vec![Second::default(); strata.cells.len()];
+    let (rings, columns) = (strata.rings(), strata.columns());
+    let near: f32 = (0..columns).map(|column| strata.cell(0, column).near).sum();
+    let distance = columns as f32 / near.max(FURTHEST);
+    for column in 0..columns {
+        let next = (column + 1) % columns;
+        // The middle of the hemisphere, which has the radiance of the innermost stratum on its side.
+        let pole = Corner {
             place: Vec3::Z * distance,
             distance,
-            cell: self.strata.index(0, column),
+            cell: strata.index(0, column),
+        };
+        let mut inner = [pole; 2];
+        // Ring by ring outwards, and from the last one down to the plane of the surface.
+        for ring in 0..=rings {
+            let outer = [column, next].map(|column| corner(strata, ring, column));
+            if ring > 0 {
+                add(&mut weights, [inner[0], outer[1], inner[1]]);
+            }
+            add(&mut weights, [inner[0], outer[0], outer[1]]);
+            inner = outer;
         }
     }
+    weights
+}
 
-    /// The middle of joined strata; behind the last ring, what is below its middle in the plane of the surface.
-    fn corner(&self, ring: usize, column: usize) -> Corner {
-        let is_rim = ring == self.strata.rings();
-        let ring = ring.min(self.strata.rings() - 1);
-        let distance = 1.0 / self.strata.cell(ring, column).near.max(FURTHEST);
-        let middle = self.strata.middle(ring, column) * distance;
-        Corner {
-            place: if is_rim { middle.with_z(0.0) } else { middle },
-            distance,
-            cell: self.strata.index(ring, column),
-        }
+/// The middle of joined strata; behind the last ring, what is below its middle in the plane of the surface.
+fn corner(strata: &Strata, ring: usize, column: usize) -> Corner {
+    let is_rim = ring == strata.rings();
+    let ring = ring.min(strata.rings() - 1);
+    let distance = 1.0 / strata.cell(ring, column).near.max(FURTHEST);
+    let middle = strata.middle(ring, column) * distance;
+    Corner {
+        place: if is_rim { middle.with_z(0.0) } else { middle },
+        distance,
+        cell: strata.index(ring, column),
     }
 }
 

@@ -53,8 +53,7 @@ impl IrradianceCache {
     /// [`CacheSettings::read_weight`](super::CacheSettings::read_weight). Without gradients `w_j = 1/ε_j − 1/a`. Both fall to zero where a record ends, so that its end does not show.
     ///
     /// Source: Ward, Rubinstein and Clear 1988; Ward and Heckbert 1992. Differs: a weight that is smooth at the record as
-    /// well, so that the noise of no single record shows (a cone: Tabellion and Lamorlette, SIGGRAPH 2004), and less of it where the
-    /// range is widened to the least, so that what is dark at a contact does not spread.
+    /// well, so that the noise of no single record shows (a cone: Tabellion and Lamorlette, SIGGRAPH 2004).
     ///
     /// - `normal`, `sees`: as for [`IrradianceCache::covers`].
     #[inline]
@@ -77,7 +76,7 @@ impl IrradianceCache {
             }
             let (value, weight) = if self.settings.gradients {
                 let rest = 1.0 - error * error;
-                (record.extrapolate(position, normal), rest * rest * record.trust())
+                (record.extrapolate(position, normal), rest * rest)
             } else {
                 (record.irradiance, 1.0 / error.max(LEAST_ERROR) - 1.0)
             };

@@ -101,10 +101,12 @@ pub fn find_deep_sites(scene: &Scene, methods: &Methods, path: Path, ray: Ray, p
         };
         let path = Path {
             medium: site.medium,
+            depth: 1,
             ..Path::from_eye(0, stream)
         };
         if site.geometric.dot(wi) > 0.0 {
-            find_sites(scene, methods, path, next, pixel_size, sites);
+            let length = site.pixel / pixel_size.max(f32::MIN_POSITIVE);
+            find_sites_behind(scene, methods, (path, next), pixel_size, length, sites);
         }
     }
 }
@@ -140,15 +142,21 @@ impl Site {
 ///
 /// - `path`, `ray`: as they leave the camera.
 /// - `pixel_size`: what a pixel spans at a distance of one metre, metres.
-pub fn find_sites(
+pub fn find_sites(scene: &Scene, methods: &Methods, path: Path, ray: Ray, pixel_size: f32, sites: &mut Vec<Site>) {
+    find_sites_behind(scene, methods, (path, ray), pixel_size, 0.0, sites);
+}
+
+/// As [`find_sites`], where the ray begins some way from the eye.
+///
+/// - `length`: of that way, metres.
+fn find_sites_behind(
     scene: &Scene,
     methods: &Methods,
-    mut path: Path,
-    mut ray: Ray,
+    (mut path, mut ray): (Path, Ray),
     pixel_size: f32,
+    mut length: f32,
     sites: &mut Vec<Site>,
 ) {
-    let mut length = 0.0;
     while let Some(hit) = arrive(scene, &mut path, &ray) {
         length += ray.origin.distance(hit.p);
         let vertex = Vertex::new(scene, &hit, -ray.direction, &path.medium);

@@ -1,5 +1,6 @@
 use super::gradient::{rotational, translational};
 use super::hessian::curvature;
+use super::strata::Strata;
 use super::{CacheSettings, ErrorMetric, Hemisphere, HemisphereSample, IrradianceRecord, RgbGradient, Site};
 use radiometry::{Frame, Rgb};
 
@@ -28,9 +29,10 @@ const TOLERANCE: f32 = 0.5;
 /// By the Hessian it is `r ∝ √(pixel √(E/|∇²E|))`: a linear change is off by about `|∇²E| R²/4` in the mean over a disc, and the
 /// sum over all pixels of that error relative to E is least, for a number of records, where R⁴ is in proportion to the pixel's
 /// area and `E/|∇²E|`. What the rays did not meet is not in the Hessian, so that no record holds further than half the distance of
-/// the nearest thing.
+/// the nearest thing, at the usual 1/a.
 ///
-/// In both cases it is no more than where a linear change would have doubled or ended the light.
+/// By the harmonic mean it is no more than where a linear change would have doubled or ended the light; by the Hessian five times
+/// that, so that at the usual 1/a half the change fits into the radius.
 ///
 /// Source: Ward, Rubinstein and Clear 1988; Schwarzhaupt, Wann Jensen and Jarosz 2012; the limit by the gradient as in Ward's
 /// Radiance. Differs: the error is weighed by what is seen of it, in pixels.
@@ -53,12 +55,17 @@ pub fn summarize(
         return None;
     }
     let nearest = samples.iter().map(|sample| sample.inverse_distance).fold(0.0, f32::max);
+    let strata = Strata::new(hemisphere, samples);
     let mut range = match settings.metric {
         ErrorMetric::HarmonicMean => samples.len() as f32 / near.max(f32::MIN_POSITIVE),
         ErrorMetric::OcclusionHessian => {
-            let bend = curvature(hemisphere, samples).max(f32::MIN_POSITIVE);
-            let length = (irradiance.mean() / bend).sqrt();
-            let by_error = USUAL_WEIGHT * (TOLERANCE * site.pixel * length).sqrt();
+            let bend = curvature(&strata);
+            // Where there is no light it does not change.
+            let by_error = if bend > 0.0 {
+                USUAL_WEIGHT * (TOLERANCE * site.pixel * (irradiance.mean() / bend).sqrt()).sqrt()
+            } else {
+                f32::INFINITY
+            };
             by_error.min(settings.metric.ranges_per_distance() / nearest.max(f32::MIN_POSITIVE))
         }
     }
@@ -67,7 +74,7 @@ pub fn summarize(
     if settings.gradients {
         let frame = Frame::from_normal(site.normal);
         rotation = rotational(hemisphere, samples).map(|v| frame.world_from_local(v));
-        translation = translational(hemisphere, samples).map(|v| frame.world_from_local(v));
+        translation = translational(hemisphere, &strata).map(|v| frame.world_from_local(v));
         let steepness = translation.mean().length();
         if steepness > 0.0 {
             range = range.min(settings.metric.ranges_per_distance() * irradiance.mean() / steepness);

@@ -1,5 +1,6 @@
 use super::gradient::{rotational, translational};
 use super::hessian::curvature;
+use super::strata::Strata;
 use super::{
     CacheSettings, ErrorMetric, Hemisphere, HemisphereSample, IrradianceCache, IrradianceRecord, RgbGradient, Site,
     Spacing, summarize,
@@ -76,7 +77,10 @@ fn gradients_are_the_differences_of_irradiance() {
     let (origin, normal) = (Vec3::new(0.1, 0.2, 0.0), Vec3::Z);
     let hemisphere = Hemisphere::of_rays(40_000);
     let samples = look(&hemisphere, origin, normal);
-    let (turn, step) = (rotational(&hemisphere, &samples), translational(&hemisphere, &samples));
+    let (turn, step) = (
+        rotational(&hemisphere, &samples),
+        translational(&hemisphere, &Strata::new(&hemisphere, &samples)),
+    );
     let frame = radiometry::Frame::from_normal(normal);
     for axis in [Vec3::X, Vec3::Y] {
         let small = 0.02;
@@ -115,7 +119,10 @@ fn curvature_is_the_second_difference_of_irradiance() {
         let expected = (0.5 * (xx * xx + 2.0 * xy * xy + yy * yy)).sqrt();
         for rays in [1000, 40_000] {
             let hemisphere = Hemisphere::of_rays(rays);
-            let found = f64::from(curvature(&hemisphere, &look(&hemisphere, origin, Vec3::Z)));
+            let found = f64::from(curvature(&Strata::new(
+                &hemisphere,
+                &look(&hemisphere, origin, Vec3::Z),
+            )));
             // It is the root of a root that counts: 60 % off are 13 % of a radius.
             let off = found / expected;
             assert!(
@@ -131,7 +138,7 @@ fn a_room_of_even_light_has_no_curvature() {
     let hemisphere = Hemisphere::of_rays(1000);
     let mut samples = look(&hemisphere, Vec3::new(0.4, -1.0, 0.3), Vec3::Z);
     samples.iter_mut().for_each(|sample| sample.radiance = Rgb::splat(2.0));
-    let found = curvature(&hemisphere, &samples);
+    let found = curvature(&Strata::new(&hemisphere, &samples));
     assert!(found < 1e-3, "{found}");
 }
 
@@ -145,7 +152,9 @@ fn noise_alone_makes_no_gradient() {
         inverse_distance: 1.0,
     };
     let samples: Vec<HemisphereSample> = (0..hemisphere.rays()).map(sample).collect();
-    let found = translational(&hemisphere, &samples).mean().length();
+    let found = translational(&hemisphere, &Strata::new(&hemisphere, &samples))
+        .mean()
+        .length();
     // E is about π.
     assert!(found < 1.0, "{found}");
 }
@@ -289,7 +298,7 @@ fn a_summary_keeps_its_range_in_bounds() {
         max_pixels: 40.0,
         most: 7.0,
     };
-    let of = |inverse_distance: f32, radiance: f32| {
+    let of_metric = |metric: ErrorMetric, inverse_distance: f32, radiance: f32| {
         let sample = HemisphereSample {
             radiance: Rgb::splat(radiance),
             inverse_distance,
@@ -298,10 +307,22 @@ fn a_summary_keeps_its_range_in_bounds() {
             &hemisphere,
             &vec![sample; hemisphere.rays() as usize],
             &site,
-            &SETTINGS,
+            &CacheSettings { metric, ..SETTINGS },
             &spacing,
         )
     };
+    let of = |inverse_distance, radiance| of_metric(ErrorMetric::HarmonicMean, inverse_distance, radiance);
+    // By the Hessian, even light is the same everywhere, and no light as well.
+    for radiance in [1.0, 0.0] {
+        let by_hessian = |inverse_distance| of_metric(ErrorMetric::OcclusionHessian, inverse_distance, radiance);
+        let room = by_hessian(2.0).expect("sound");
+        assert!((room.range - 2.5).abs() < 1e-3, "{radiance}: {}", room.range);
+        let outside = by_hessian(0.0).expect("sound");
+        assert!((outside.range - 4.0).abs() < 1e-3, "{radiance}: {}", outside.range);
+    }
+    assert!(of_metric(ErrorMetric::OcclusionHessian, f32::NAN, 1.0).is_none());
+    let huge = of_metric(ErrorMetric::OcclusionHessian, 1e-20, 1e30).expect("sound");
+    assert!(huge.range.is_finite() && huge.range > 0.0);
     let room = of(0.5, 1.0).expect("sound");
     assert!((room.irradiance.r - std::f32::consts::PI).abs() < 1e-4 && (room.range - 2.0).abs() < 1e-3);
     assert!(room.translation.mean().length() < 1e-3 && room.rotation.mean().length() < 1e-3);
