@@ -31,9 +31,9 @@ pub enum CacheAnswer {
     Light {
         /// Reflected radiance of indirect light in W·m⁻²·sr⁻¹, weighted with what the path carries.
         radiance: Rgb,
-        /// Records of each square metre around, as in [`Interpolated`].
+        /// Records of each square metre around, as in [`Interpolated`](super::Interpolated).
         record_density: f32,
-        /// What is smaller is blurred, metres, as in [`Interpolated`].
+        /// What is smaller is blurred, metres, as in [`Interpolated`](super::Interpolated).
         blur: f32,
     },
     /// No record holds there.
