@@ -18,7 +18,7 @@ const BLOCK: u32 = 8;
 /// Renders with seeds of their own, whose spread is the noise.
 const SEEDS: u32 = 4;
 
-/// Chance that noise alone makes a pair fail, were all distributions normal.
+/// Chance that noise alone makes a comparison fail, were all distributions normal. A pair has four: three means, and the blocks.
 const SIGNIFICANCE: f64 = 0.01;
 
 /// Blocks darker than this share of the mean are looked at relative to it: in the dark there is little to be relative to.

@@ -2,8 +2,10 @@
 
 #![expect(clippy::print_stdout, reason = "comparisons report their figures")]
 
+mod cloud;
 mod program;
 
+use cloud::read_cloud;
 use film::{ExrImage, RgbImage, block_means};
 use program::{attempt, file, project, render, run};
 use std::path::PathBuf;
@@ -212,8 +214,6 @@ fn gradients_lower_the_error_of_as_many_records() {
     );
     let traced = layer(&traced, "indirect");
     let measure = |gradients: bool| {
-        let folder = tempfile::tempdir().expect("a folder for the profile");
-        let profile = file(&folder, "profile.json");
         let form = format!("/Render.IrradianceCache.gradients={gradients}");
         let fields = [
             dark,
@@ -223,13 +223,9 @@ fn gradients_lower_the_error_of_as_many_records() {
             "/Render.IrradianceCache.metric=HarmonicMean",
             &form,
         ];
-        let image = render(
-            &scene("cornell"),
-            &[&size[..], &["--samples", "64", "--profile", &profile]].concat(),
-            &fields,
-        );
+        let image = render(&scene("cornell"), &[&size[..], &["--samples", "64"]].concat(), &fields);
         let error = film::compare(&layer(&image, "indirect"), &traced, 0).expect("same size");
-        (records_of(&profile), error.rel_mse)
+        (records_of(&size, &fields), error.rel_mse)
     };
     let [(records, smooth), (plain_records, plain)] = [true, false].map(measure);
     println!("relMSE {smooth:.5} of {records} records with gradients, {plain:.5} of {plain_records} without");
@@ -240,19 +236,17 @@ fn gradients_lower_the_error_of_as_many_records() {
     assert!(smooth < plain, "{smooth} {plain}");
 }
 
-/// Records that a render made, by its profile.
-fn records_of(profile: &str) -> f64 {
-    let text = std::fs::read_to_string(profile).expect("a profile that was written");
-    let lines: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    let mut lines = lines.as_array().expect("a line for each system").iter();
-    let inserts = |line: &&serde_json::Value| {
-        line["system"]
-            .as_str()
-            .is_some_and(|name| name.contains("insert_records"))
-    };
-    lines.find(inserts).expect("the system ran")["items"]
-        .as_f64()
-        .expect("a count")
+/// How many records the eye reads.
+fn records_of(options: &[&str], fields: &[&str]) -> f64 {
+    let folder = tempfile::tempdir().expect("a folder for the cloud");
+    let cloud = file(&folder, "records.ply");
+    run(
+        "records",
+        &scene("cornell"),
+        &[options, &["-o", &cloud]].concat(),
+        fields,
+    );
+    read_cloud(cloud).1 as f64
 }
 
 /// What blocks of 8×8 pixels may be off by against path tracing: noise of both at these few samples.

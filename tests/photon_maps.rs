@@ -2,8 +2,10 @@
 
 #![expect(clippy::print_stdout, reason = "furnaces report their figures")]
 
+mod cloud;
 mod program;
 
+use cloud::read_cloud;
 use film::{ExrImage, RgbImage, block_means};
 use glam::Vec3;
 use program::{attempt, file, project, render, run};
@@ -295,18 +297,10 @@ fn photons_are_drawn_and_written_down() {
         run("photons", &scene("cornell_glass"), &options, &SMALL);
         let drawn = bytes(&picture);
         assert!(drawn.starts_with(b"\x89PNG"), "{colour}");
-        let written = bytes(&cloud);
-        let end = written
-            .windows(11)
-            .position(|w| w == b"end_header\n")
-            .expect("a header")
-            + 11;
-        let header = std::str::from_utf8(&written[..end]).expect("text");
-        let count = header.lines().find_map(|line| line.strip_prefix("element vertex "));
-        let count: usize = count.expect("a count").parse().expect("a number");
+        let (header, count, body) = read_cloud(&cloud);
         assert!(count >= 9000, "{header}");
         // Three doubles, nine floats, four bytes, two counts.
-        assert_eq!(written.len() - end, count * (3 * 8 + 9 * 4 + 4 + 2 * 4), "{header}");
+        assert_eq!(body, count * (3 * 8 + 9 * 4 + 4 + 2 * 4), "{header}");
     }
 }
 

@@ -2,8 +2,10 @@
 
 #![expect(clippy::print_stdout, reason = "comparisons report their figures")]
 
+mod cloud;
 mod program;
 
+use cloud::read_cloud;
 use film::{ExrImage, RgbImage, block_means, read_exr};
 use program::{attempt, file, project, render, run};
 use std::path::{Path, PathBuf};
@@ -257,20 +259,12 @@ fn records_are_drawn_and_written_down() {
         let dots = drawn.pixels().filter(|pixel| pixel.0.iter().max() > Some(&60)).count();
         println!("{colour}: {dots} pixels with records");
         assert!(dots > 100 && dots < 1500, "{colour}: {dots}");
-        let written = bytes(&cloud);
-        let end = written
-            .windows(11)
-            .position(|w| w == b"end_header\n")
-            .expect("a header")
-            + 11;
-        let header = std::str::from_utf8(&written[..end]).expect("text");
-        let count = header.lines().find_map(|line| line.strip_prefix("element vertex "));
-        let count: usize = count.expect("a count").parse().expect("a number");
+        let (header, count, body) = read_cloud(&cloud);
         for property in ["double x", "float nx", "uchar red", "float irradiance_r", "float range"] {
             assert!(header.contains(&format!("property {property}\n")), "{header}");
         }
         // Three doubles, seven floats, three bytes, a number.
-        assert_eq!(written.len() - end, count * (3 * 8 + 7 * 4 + 3 + 4), "{header}");
+        assert_eq!(body, count * (3 * 8 + 7 * 4 + 3 + 4), "{header}");
         assert!(count > 300, "{count}");
     }
 }

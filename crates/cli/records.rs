@@ -13,6 +13,7 @@ use bevy_ecs::world::World;
 use film::{WriteError, atomic_write};
 use pipeline_core::RenderClock;
 use pipeline_data::{IrradianceRecord, RecordKeys, RecordsByDepth, SceneOrigin, write_records};
+use std::io;
 use std::path::Path;
 
 /// Extension of files that a render takes up again.
@@ -38,7 +39,18 @@ pub(crate) fn execute(options: &RecordsArgs) -> Result<(), Failure> {
     let colours = Colours::new(options.colour, seen);
     let mut found = vec![format!("{} records, and {} deeper ones", seen.len(), deep.len())];
     found.extend(summary::reused_records(&app));
-    session.write(&found, |path| write(app.world(), path, &records, &colours))
+    let world = app.world();
+    session.write(&found, |path| match CacheFormat::of(path, OWN) {
+        Some(CacheFormat::Own) => write_own(world, path, &records),
+        Some(CacheFormat::Ply) => {
+            let origin = world.resource::<SceneOrigin>().0;
+            atomic_write(path, |file| record_ply::write(file, seen, origin, &colours))
+        }
+        Some(CacheFormat::Png) | None => {
+            let points: Vec<Point> = seen.iter().map(|entity| colours.point(entity)).collect();
+            point_picture::write(path, world, &points)
+        }
+    })
 }
 
 fn is_own(path: &Path) -> bool {
@@ -53,21 +65,14 @@ fn made(app: &mut App) -> Vec<IrradianceRecord> {
     records
 }
 
-fn write(world: &World, path: &Path, records: &[IrradianceRecord], colours: &Colours) -> Result<(), WriteError> {
+/// Writes the records of all depths for a render to take up.
+fn write_own(world: &World, path: &Path, records: &[IrradianceRecord]) -> Result<(), WriteError> {
+    let of_depth = |depth: usize| records.iter().filter(move |entity| entity.depth as usize == depth);
+    let by_depth: RecordsByDepth = std::array::from_fn(|depth| of_depth(depth).map(|entity| entity.record).collect());
     let origin = *world.resource::<SceneOrigin>();
-    let seen = &records[..records.partition_point(|entity| entity.depth == 0)];
-    match (CacheFormat::of(path, OWN), world.get_resource::<RecordKeys>()) {
-        (Some(CacheFormat::Ply), _) => atomic_write(path, |file| record_ply::write(file, seen, origin.0, colours)),
-        (Some(CacheFormat::Own), Some(keys)) => {
-            let of_depth = |depth: usize| records.iter().filter(move |entity| entity.depth as usize == depth);
-            let records: RecordsByDepth =
-                std::array::from_fn(|depth| of_depth(depth).map(|entity| entity.record).collect());
-            atomic_write(path, |file| write_records(file, keys, origin, &records))
-        }
-        // Without keys records change during a render; to keep them was refused before any was made.
-        (Some(CacheFormat::Png | CacheFormat::Own) | None, _) => {
-            let points: Vec<Point> = seen.iter().map(|entity| colours.point(entity)).collect();
-            point_picture::write(path, world, &points)
-        }
-    }
+    atomic_write(path, |file| match world.get_resource::<RecordKeys>() {
+        Some(keys) => write_records(file, keys, origin, &by_depth),
+        // To keep these was refused before any was made.
+        None => Err(io::Error::other("records that change during a render cannot be kept")),
+    })
 }

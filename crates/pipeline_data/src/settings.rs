@@ -57,6 +57,7 @@ impl RenderSettings {
         }
         key
     }
+
     /// What light that was computed at places of the scene has to agree with to be taken up again: as [`RenderSettings::key`],
     /// without what decides the view alone. Camera, lens and film may differ, and the frame where nothing else changes.
     #[must_use]

@@ -18,8 +18,9 @@ pub struct Spacing {
 /// 1/a at which [`TOLERANCE`] is meant.
 const USUAL_WEIGHT: f32 = 10.0;
 
-/// Square of the radius within which a record holds, in pixels times √(E/|∇²E|), at the usual 1/a. Measured on `interior.ron`:
-/// a quarter of it makes half as many records more and no less error, four times it a twelfth less, and 0.1 % more error.
+/// Square of the radius within which a record holds, in pixels times √(E/|∇²E|), at the usual 1/a. Measured on `interior.ron` at
+/// 320×200, 3,000 rays: half of it makes 24 % more records, four times it 16 % fewer; blocks are off by 0.98 and 1.13 % at the median
+/// then, and by 0.96 % as it is.
 const TOLERANCE: f32 = 0.5;
 
 /// Makes a record of what the rays of a hemisphere saw.
