@@ -196,7 +196,7 @@ fn assert_cached_blocks(name: &str, blocks: &RgbImage, reference: &RgbImage) {
     assert_alike(&format!("{name}-cached"), passes, blocks, reference, &found_text);
 }
 
-/// The scene that the README shows, with its own settings, against path tracing.
+/// The room of the README, with its own settings, against path tracing.
 #[test]
 #[ignore = "takes minutes; .ci/full runs it"]
 fn irradiance_cache_meets_the_reference_on_the_interior() {
