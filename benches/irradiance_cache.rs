@@ -96,7 +96,7 @@ fn insert(criterion: &mut Criterion) {
                 let mut octree = RecordOctree::new(&BOUNDS, SETTINGS.cell_records);
                 for record in &source {
                     octree
-                        .insert(record.position, record.range / SETTINGS.read_weight())
+                        .insert(record.position, SETTINGS.read_radius(record))
                         .expect("records in the room");
                 }
                 black_box(octree)

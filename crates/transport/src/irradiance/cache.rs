@@ -29,6 +29,14 @@ impl CacheSettings {
         let wider = if self.gradients { READ_WIDER } else { 1.0 };
         (self.min_weight / wider).max(1.0)
     }
+
+    /// Distance within which a record is read, metres. Where the range is widened to the least it is no further than where no
+    /// other record is made: it would blur what is near a contact.
+    #[inline]
+    #[must_use]
+    pub fn read_radius(&self, record: &IrradianceRecord) -> f32 {
+        (record.range / self.read_weight()).max(record.least_range / self.min_weight)
+    }
 }
 
 /// Records of irradiance and the octree over them.
@@ -84,7 +92,8 @@ impl IrradianceCache {
     /// # Errors
     /// As [`RecordOctree::insert`].
     pub fn accepts(&self, record: &IrradianceRecord) -> Result<(), RecordOctreeError> {
-        self.octree.accepts(record.position, self.reach(record))?;
+        self.octree
+            .accepts(record.position, self.settings.read_radius(record))?;
         self.octree.accepts(record.position, record.range)
     }
 
@@ -107,8 +116,8 @@ impl IrradianceCache {
         }
         self.neighbours.lower_ranges(&mut self.records, first)?;
         for row in first..self.records.len() {
-            let reach = self.reach(&self.records[row]);
-            self.octree.insert(self.records[row].position, reach)?;
+            let radius = self.settings.read_radius(&self.records[row]);
+            self.octree.insert(self.records[row].position, radius)?;
         }
         result
     }
@@ -117,7 +126,7 @@ impl IrradianceCache {
     pub fn rebuild(&mut self, bounds: &Bounds) -> Result<(), RecordOctreeError> {
         self.octree = RecordOctree::new(bounds, self.settings.cell_records);
         for record in &self.records {
-            self.octree.insert(record.position, self.reach(record))?;
+            self.octree.insert(record.position, self.settings.read_radius(record))?;
         }
         Ok(())
     }
@@ -134,10 +143,5 @@ impl IrradianceCache {
         self.records.capacity() * size_of::<IrradianceRecord>()
             + self.octree.memory_bytes()
             + self.neighbours.memory_bytes()
-    }
-
-    /// Distance within which a record can have enough weight.
-    fn reach(&self, record: &IrradianceRecord) -> f32 {
-        record.effective_range() / self.settings.read_weight()
     }
 }

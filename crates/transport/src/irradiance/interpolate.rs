@@ -1,9 +1,9 @@
-use super::{IrradianceCache, IrradianceRecord};
+use super::{CacheSettings, IrradianceCache, IrradianceRecord};
 use glam::Vec3;
 use radiometry::Rgb;
 use std::f32::consts::FRAC_1_PI;
 
-/// How far a place may lie before or behind the plane of a record, in ranges times a.
+/// How far a place may lie before or behind the plane of a record, in radii within which it holds.
 const FRONT_TOLERANCE: f32 = 0.1;
 
 /// Rays may have missed what is nearest; up to this share of the nearest that they met there is nothing.
@@ -32,25 +32,28 @@ impl IrradianceCache {
     /// - `sees`: whether nothing stands between the place and a record; asked only of records with something near them.
     #[must_use]
     pub fn covers(&self, position: Vec3, normal: Vec3, sees: impl Fn(&IrradianceRecord) -> bool) -> bool {
+        let CacheSettings {
+            min_weight, validity, ..
+        } = self.settings;
         let candidates = self.octree.candidates(position);
         candidates.map(|row| &self.records[row as usize]).any(|record| {
-            error_at(
-                record,
-                position,
-                normal,
-                self.settings.min_weight,
-                self.settings.validity,
-            )
-            .is_some()
-                && (!self.settings.validity || record.is_clear(position) || sees(record))
+            let radius = record.effective_range() / min_weight;
+            error_at(record, (position, normal), radius, min_weight, validity).is_some()
+                && (!validity || record.is_clear(position) || sees(record))
         })
     }
 
     /// Interpolates the irradiance at a place between the records that hold there; `None` where none does.
     ///
     /// `E(x) = Σ w_j (E_j + (n_j × n)·∇_r E_j + (x − x_j)·∇_t E_j)/Σ w_j`, over records with
-    /// `ε_j = |x − x_j|/r_j + √(1 − n·n_j) < a` whose plane the place lies in, `w_j = (1 − (ε_j/a)²)²`, 1/a =
-    /// [`CacheSettings::read_weight`](super::CacheSettings::read_weight). Without gradients `w_j = 1/ε_j − 1/a`. Both fall to zero where a record ends, so that its end does not show.
+    /// `ε_j/a = |x − x_j|/R_j + √(1 − n·n_j)/a < 1` whose plane the place lies in, 1/a = [`CacheSettings::read_weight`] and
+    /// R_j = [`CacheSettings::read_radius`]. `w_j = √t_j (1 − (ε_j/a)²)²`, without gradients `1/ε_j − 1/a`. Both fall to zero
+    /// where a record ends, so that its end does not show.
+    ///
+    /// t_j is one, or less where the range was widened to the least: how much of it was found. At a contact such a record is
+    /// too dark for most of what it covers, and more are made there than further out. Above the skirting of `interior.ron` at
+    /// 640×400 the first row of pixels is too dark by 2.5 % without the factor, right by 0.1 % with the root, and by the whole
+    /// share too bright by 1.4 %.
     ///
     /// Source: Ward, Rubinstein and Clear 1988; Ward and Heckbert 1992. Differs: a weight that is smooth at the record as
     /// well, so that the noise of no single record shows (a cone: Tabellion and Lamorlette, SIGGRAPH 2004).
@@ -64,27 +67,31 @@ impl IrradianceCache {
         normal: Vec3,
         sees: impl Fn(&IrradianceRecord) -> bool,
     ) -> Option<Interpolated> {
+        let CacheSettings {
+            gradients, validity, ..
+        } = self.settings;
         let min_weight = self.settings.read_weight();
         let records = self.octree.candidates(position).map(|row| &self.records[row as usize]);
         let (mut sum, mut weights, mut record_density, mut distances) = (Rgb::BLACK, 0.0, 0.0, 0.0);
         for record in records {
-            let Some(error) = error_at(record, position, normal, min_weight, self.settings.validity) else {
+            let radius = self.settings.read_radius(record);
+            let Some(error) = error_at(record, (position, normal), radius, min_weight, validity) else {
                 continue;
             };
-            if self.settings.validity && !record.is_clear(position) && !sees(record) {
+            if validity && !record.is_clear(position) && !sees(record) {
                 continue;
             }
-            let (value, weight) = if self.settings.gradients {
+            let (value, weight) = if gradients {
                 let rest = 1.0 - error * error;
-                (record.extrapolate(position, normal), rest * rest)
+                let value = record.extrapolate(position, normal);
+                (value, rest * rest * record.trust().sqrt())
             } else {
                 (record.irradiance, 1.0 / error.max(LEAST_ERROR) - 1.0)
             };
             sum += value * weight;
             weights += weight;
             distances += weight * position.distance(record.position);
-            let reach = record.effective_range() / min_weight;
-            record_density += FRAC_1_PI / (reach * reach);
+            record_density += FRAC_1_PI / (radius * radius);
         }
         (weights > 0.0).then(|| Interpolated {
             irradiance: (sum * (1.0 / weights)).map(|channel| channel.max(0.0)),
@@ -94,29 +101,28 @@ impl IrradianceCache {
     }
 }
 
-/// ε/a of a record at a place, in [0, 1); `None` where the record does not hold.
+/// ε/a of a record at a place with its normal, in [0, 1); `None` where the record does not hold.
 ///
-/// - `min_weight`: 1/a.
+/// - `radius`: within which it holds, metres.
+/// - `min_weight`: 1/a of turned normals, ≥ 1.
 /// - `in_plane`: whether the place has to lie in the plane of the record.
 #[inline]
-pub(super) fn error_at(
+fn error_at(
     record: &IrradianceRecord,
-    position: Vec3,
-    normal: Vec3,
+    (position, normal): (Vec3, Vec3),
+    radius: f32,
     min_weight: f32,
     in_plane: bool,
 ) -> Option<f32> {
-    let min_weight = min_weight.max(1.0);
     let step = position - record.position;
-    let (range, distance_sq) = (record.effective_range(), step.length_squared());
-    let reach = range / min_weight;
-    if distance_sq >= reach * reach {
+    let distance_sq = step.length_squared();
+    if distance_sq >= radius * radius {
         return None;
     }
     let turned = (1.0 - normal.dot(record.normal)).max(0.0).sqrt();
-    let error = (distance_sq.sqrt() / range + turned) * min_weight;
+    let error = distance_sq.sqrt() / radius + turned * min_weight;
     let height = 0.5 * step.dot(normal + record.normal);
-    let tolerance = FRONT_TOLERANCE * reach + 4.0 * f32::EPSILON * position.abs().max_element();
+    let tolerance = FRONT_TOLERANCE * radius + 4.0 * f32::EPSILON * position.abs().max_element();
     (error < 1.0 && (!in_plane || height.abs() <= tolerance)).then_some(error)
 }
 
