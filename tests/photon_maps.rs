@@ -300,7 +300,7 @@ fn photons_are_drawn_and_written_down() {
         let (header, count, body) = read_cloud(&cloud);
         assert!(count >= 9000, "{header}");
         // Three doubles, nine floats, four bytes, two counts.
-        assert_eq!(body, count * (3 * 8 + 9 * 4 + 4 + 2 * 4), "{header}");
+        assert_eq!(body.len(), count * (3 * 8 + 9 * 4 + 4 + 2 * 4), "{header}");
     }
 }
 
