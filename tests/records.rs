@@ -220,6 +220,38 @@ fn records_that_do_not_belong_here_are_refused() {
 }
 
 #[test]
+fn a_render_is_resumed_with_the_records_that_it_began_with() {
+    let cornell = scene("cornell");
+    let folder = folder();
+    let kept = keep(&folder, "here.records", &cornell, &[], &FIELDS);
+    let moved = [&FIELDS[..], &["/Scene/Camera.Transform.translate=(0.3, 1.2, 3.6)"]].concat();
+    let picture = |name: &str, options: &[&str], fields: &[&str]| {
+        let output = file(&folder, name);
+        let options = [&SIZE[..], &["--samples", "200", "-o", &output], options].concat();
+        (attempt("run", &cornell, &options, fields), output)
+    };
+    let succeed = |name: &str, options: &[&str], fields: &[&str]| {
+        let (ran, output) = picture(name, options, fields);
+        assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+        bytes(&output)
+    };
+    let stopped = ["--records", &kept, "--time-limit", "1ms"];
+    // Records for another view decide bits: with them a render goes on, without them it does not.
+    let with_records = succeed("whole.exr", &["--records", &kept], &moved);
+    let _ = succeed("part.exr", &stopped, &moved);
+    let (refused, _) = picture("part.exr", &["--resume"], &moved);
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert!(
+        refused.status.code() == Some(2) && said.contains("bad-checkpoint"),
+        "{said}"
+    );
+    assert!(succeed("part.exr", &["--resume", "--records", &kept], &moved) == with_records);
+    // Those for this view only save time.
+    let _ = succeed("part.exr", &stopped, &FIELDS);
+    assert!(succeed("part.exr", &["--resume"], &FIELDS) == succeed("whole.exr", &[], &FIELDS));
+}
+
+#[test]
 fn records_that_change_are_not_kept() {
     let folder = folder();
     let kept = file(&folder, "one.records");

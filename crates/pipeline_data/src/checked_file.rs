@@ -150,11 +150,11 @@ impl<'r, R: Read> CheckedReader<'r, R> {
         Ok(rows)
     }
 
-    /// Compares the checksum at the end.
-    pub(crate) fn end(mut self) -> Result<(), CheckedFileError> {
+    /// Compares the checksum at the end, and returns it.
+    pub(crate) fn end(mut self) -> Result<u64, CheckedFileError> {
         let expected = self.checksum.0;
         if u64::from_le_bytes(self.take()?) == expected {
-            Ok(())
+            Ok(expected)
         } else {
             let command = self.kind.command;
             Err(CheckedFileError::Damaged { command })

@@ -32,7 +32,9 @@ pub use photon::{
 };
 pub use photon_file::{PhotonFileError, PhotonsOfKind, read_photons, write_photons};
 pub use pixel_choice::{ChosenBlocks, PixelChoice};
-pub use record_file::{RecordFileError, RecordKeys, RecordsByDepth, StoredRecords, read_records, write_records};
+pub use record_file::{
+    BorrowedRecords, RecordFileError, RecordKeys, RecordsByDepth, StoredRecords, read_records, write_records,
+};
 pub use request::RenderRequest;
 pub use scene::{
     Acceleration, CameraFrame, ComposedScene, EnvironmentMaps, InstancePrims, PrimIndex, SceneOrigin, ShutterInterval,

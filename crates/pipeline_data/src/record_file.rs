@@ -47,11 +47,18 @@ pub struct RecordKeys {
     pub view: [u8; 32],
 }
 
+/// Checksum of a file of records for another view, which the cache began with: the image has other bits than without. Written by
+/// `irradiance_cache`; absent where there is no such file.
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BorrowedRecords(pub u64);
+
 /// What a file of records holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredRecords {
     /// Whether they were made for the same view, so that none is missing.
     pub is_complete: bool,
+    /// Of the file.
+    pub checksum: u64,
     /// By depth and number.
     pub records: RecordsByDepth,
 }
@@ -132,8 +139,12 @@ pub fn read_records(reader: &mut impl Read, keys: &RecordKeys) -> Result<StoredR
     for records in &mut records {
         *records = file.rows(good_record)?;
     }
-    file.end()?;
-    Ok(StoredRecords { is_complete, records })
+    let checksum = file.end()?;
+    Ok(StoredRecords {
+        is_complete,
+        checksum,
+        records,
+    })
 }
 
 /// Goes through the numbers of a record, in the order of the file. Whatever a record gains or loses is a line here.

@@ -69,13 +69,12 @@ impl Plugin for DefaultStages {
             path_tracing::PathTracingPlugin,
             image::ImagePlugin,
         ));
-        // These report trouble and set the clock when they prepare; the film comes first, since it is what a bad
-        // resolution fails on. Photons are planned after whoever asks for them, and before the camera, which cuts the samples
-        // into passes.
+        // These report trouble and set the clock when they prepare. Photons are planned after whoever asks for them, records are
+        // taken from a file before a film is from a checkpoint, which has to know them, and the camera comes last: it cuts the
+        // samples that the film lacks into passes.
         app.configure_sets(
             Prepare,
             (
-                image::ImageSystems,
                 path_guiding::PathGuidingSystems,
                 final_gather::FinalGatherSystems,
                 radiosity::RadiositySystems,
@@ -83,6 +82,7 @@ impl Plugin for DefaultStages {
                 photon_map::PhotonMapSystems,
                 photon_thinning::PhotonThinningSystems,
                 irradiance_cache::RecordFileSystems,
+                image::ImageSystems,
                 camera::CameraSystems,
                 depth_of_field::DepthOfFieldSystems,
             )

@@ -1,7 +1,11 @@
 use bevy_ecs::prelude::*;
+use bevy_ecs::system::SystemParam;
 use film::{Film, FilmWindow};
 use pipeline_core::Report;
-use pipeline_data::{ChosenBlocks, ComposedScene, FilmSums, PixelChoice, RenderRequest, RenderSettings};
+use pipeline_data::{
+    BorrowedRecords, ChosenBlocks, ComposedScene, FilmSums, PixelChoice, RenderRequest, RenderSettings,
+};
+use scene_format::mix_hash;
 use std::fs::File;
 use std::io::{BufReader, ErrorKind};
 use std::path::PathBuf;
@@ -14,22 +18,36 @@ pub(super) fn checkpoint_path(request: &RenderRequest) -> Option<PathBuf> {
     Some(first.with_file_name(name))
 }
 
-/// What a checkpoint has to agree with.
-pub(super) fn checkpoint_key(scene: &ComposedScene, settings: &RenderSettings) -> [u8; 32] {
-    settings.key(&scene.0, "version")
+/// What decides the bits of an image.
+#[derive(SystemParam)]
+pub(super) struct Provenance<'w> {
+    pub(super) settings: Res<'w, RenderSettings>,
+    pub(super) scene: Res<'w, ComposedScene>,
+    borrowed: Option<Res<'w, BorrowedRecords>>,
+}
+
+impl Provenance<'_> {
+    /// What a checkpoint has to agree with.
+    pub(super) fn key(&self) -> [u8; 32] {
+        let mut key = self.settings.key(&self.scene.0, "version");
+        if let Some(borrowed) = &self.borrowed {
+            mix_hash(&mut key, "records", &borrowed.0.to_le_bytes());
+        }
+        key
+    }
 }
 
 /// Makes an empty film, or takes up the one that an interrupted render left.
 pub(super) fn allocate_film(
     mut commands: Commands,
     request: Res<RenderRequest>,
-    settings: Option<Res<RenderSettings>>,
-    scene: Option<Res<ComposedScene>>,
+    provenance: Option<Provenance<'_>>,
     mut report: ResMut<Report>,
 ) {
-    let (Some(settings), Some(scene), false) = (settings, scene, report.failed()) else {
+    let (Some(provenance), false) = (provenance, report.failed()) else {
         return;
     };
+    let settings = &provenance.settings;
     let window = FilmWindow {
         resolution: settings.resolution,
         crop_min: settings.crop_min,
@@ -43,8 +61,13 @@ pub(super) fn allocate_film(
     if let (true, Some(path)) = (request.resume, checkpoint_path(&request)) {
         match File::open(&path) {
             Ok(file) => {
-                let key = checkpoint_key(&scene, &settings);
-                match Film::load(&mut BufReader::new(file), &key, window, layout(), request.tile_size) {
+                match Film::load(
+                    &mut BufReader::new(file),
+                    &provenance.key(),
+                    window,
+                    layout(),
+                    request.tile_size,
+                ) {
                     Ok(film) => resumed = Some(film),
                     Err(error) => {
                         report.fail(format!(

@@ -1,24 +1,24 @@
-use super::allocate::{checkpoint_key, checkpoint_path};
+use super::allocate::{Provenance, checkpoint_path};
 use super::resolve::ResolvedImage;
 use bevy_ecs::prelude::*;
 use film::{Image, Metadata};
 use pipeline_core::{RenderClock, Report};
 use pipeline_data::vocabulary::{Findings, field_place};
-use pipeline_data::{ComposedScene, FilmSums, RenderRequest, RenderSettings};
+use pipeline_data::{FilmSums, RenderRequest, RenderSettings};
 use scene_format::{Diagnostic, Scene};
 use std::fmt::Write as _;
 
 /// Writes the files that the request names; a checkpoint beside them when samples are missing.
 pub(super) fn write_images(
     request: Res<RenderRequest>,
-    settings: Res<RenderSettings>,
-    scene: Res<ComposedScene>,
+    provenance: Provenance,
     film: Res<FilmSums>,
     image: Res<ResolvedImage>,
     clock: Res<RenderClock>,
     mut report: ResMut<Report>,
 ) {
-    let hash = scene.0.hash.iter().fold(String::new(), |mut text, byte| {
+    let (settings, scene) = (&provenance.settings, &provenance.scene.0);
+    let hash = scene.hash.iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text
     });
@@ -35,7 +35,7 @@ pub(super) fn write_images(
         extra: Vec::new(),
     };
     if clock.waves_done >= clock.waves_total {
-        warn_of_black_image(&image.0, &scene.0, &settings, &request, &mut report);
+        warn_of_black_image(&image.0, scene, settings, &request, &mut report);
     }
     let has_samples = (0..film.0.pixel_count()).any(|i| film.0.sample_count(i) > 0);
     for path in &request.outputs {
@@ -62,7 +62,7 @@ pub(super) fn write_images(
         return;
     };
     if clock.waves_done < clock.waves_total {
-        let key = checkpoint_key(&scene, &settings);
+        let key = provenance.key();
         if let Err(error) = film::atomic_write(&checkpoint, |out| film.0.save(out, &key)) {
             report.fail(format!("error[write]: {error}"));
         }

@@ -1,13 +1,14 @@
 //! Irradiance cache: indirect light computed well at few places, and interpolated between them.
 //!
 //! Scene: `"/Render": Def(LightTransport: (indirect: IrradianceCache), IrradianceCache: (rays: 1000))`
-//! Sets: `PrepareStages` (`plan_cache`, `reload_records`), `DeriveFromMaps` (`renew_records`), all of `CachePass` (`generate_rays`,
-//! `find_sites`, `choose_sites`, `sample_records`, `insert_records`, `maintain_octree`), `LookUp` (`look_up_irradiance`).
-//! Reads the transport scene, the settings, the camera, and photon maps where `incoming` says so. Writes entities with
-//! [`IrradianceRecord`](pipeline_data::IrradianceRecord), the cache over them, their keys, contributions, and the film layer
-//! `record_density`: records of each square metre around what is seen first, m⁻² ([`RecordDensity`]).
-//! Counters: `irradiance_cache/records` that were made, `irradiance_cache/reused` from a file, `irradiance_cache/rays`, `irradiance_cache/lookups`, of these
-//! `irradiance_cache/missing` where no record held, and `irradiance_cache/unsuited`.
+//! Sets: `PrepareStages` (`plan_cache`, `reload_records`), `DeriveFromMaps` (`renew_records`), all of `CachePass`
+//! (`generate_rays`, `find_sites`, `choose_sites`, `sample_records`, `insert_records`, `maintain_octree`), `LookUp`
+//! (`look_up_irradiance`). Reads the transport scene, the settings, the camera, and photon maps where `incoming` says so.
+//! Writes entities with [`IrradianceRecord`](pipeline_data::IrradianceRecord), the cache over them, their keys,
+//! contributions, and the film layer `record_density`: records of each square metre around what is seen first, m⁻²
+//! ([`RecordDensity`]). Counters: `irradiance_cache/records` that were made, `irradiance_cache/reused` from a file,
+//! `irradiance_cache/rays`, `irradiance_cache/lookups`, of these `irradiance_cache/missing` where no record held, and
+//! `irradiance_cache/unsuited`.
 //!
 //! Before the first wave the cache is filled, coarse to fine over the image: camera rays 32 pixels apart, then 16, and so on
 //! to one, are followed along S lobes to where the eye asks for indirect light. Where nothing in the cache tells, a record is
@@ -17,9 +18,8 @@
 //!
 //! Rays of records do not go on as paths: where they end they read deeper records, sparse and wide, for the light of further
 //! reflections, which then has the noise of their mean, not that of a single path. Deep records lie where rays of those
-//! that the eye reads end, behind the camera as well, and are made first: the deepest of paths to the end, those of the next depth by
-//! reading them. The eye
-//! reads none of them.
+//! that the eye reads end, behind the camera as well, and are made first: the deepest of paths to the end, those of the next
+//! depth by reading them. The eye reads none of them.
 //!
 //! Records can be kept in a file (`pipeline records`, `run --records`). Two keys say what they are worth elsewhere: one of their
 //! light, which must agree, and one of the view. For the same view none is missing, and the image has the same bits; for another
@@ -29,10 +29,9 @@
 //! What the cache is not asked, and what no record tells of, is traced: glossy D lobes, normal maps, things that move,
 //! and places that only a lens or a moment shows. The cache is filled through a pinhole, at random moments.
 //!
-//! Limits: light that changes faster than records follow is blurred, as shadows of indirect light at contacts. `max_depth` does not
-//! count mirrors on the way to a record. Records that read progressive photon maps are new in every pass and cannot be kept. The records of a
-//! crop are not those of the whole picture.
-//! Source: see [`transport::IrradianceCache`].
+//! Limits: light that changes faster than records follow is blurred, as shadows of indirect light at contacts. `max_depth`
+//! does not count mirrors on the way to a record. Records that read progressive photon maps are new in every pass and cannot
+//! be kept. The records of a crop are not those of the whole picture. Source: see [`transport::IrradianceCache`].
 
 mod density;
 mod fill;
@@ -79,8 +78,8 @@ pub struct IrradianceCache {
     /// Extrapolate records by the gradients of their light, and weigh them smoothly. Off: as irradiance caching was at first,
     /// with the harmonic mean for its metric, to compare.
     pub gradients: bool,
-    /// Ask whether a record can be seen from where it is used, and lies in the same plane. Off: records are used through walls and
-    /// around corners; shows what the test is for.
+    /// Ask whether a record can be seen from where it is used, and lies in the same plane. Off: records are used through
+    /// walls and around corners; shows what the test is for.
     pub validity: bool,
     /// Least radius within which a record holds, in pixels. Higher makes fewer records in corners, and blurs them.
     #[reflect(@Range::closed(0.1, 100.0))]

@@ -3,8 +3,8 @@ use bevy_ecs::prelude::*;
 use pipeline_core::Counters;
 use pipeline_data::vocabulary::{Findings, SceneReport};
 use pipeline_data::{
-    BuiltIrradianceCache, CameraFrame, IrradianceRecord, ProgressivePasses, RecordFileError, RecordKeys,
-    RenderSettings, SceneOrigin, StoredRecords, TransportScene, read_records,
+    BorrowedRecords, BuiltIrradianceCache, CameraFrame, IrradianceRecord, ProgressivePasses, RecordFileError,
+    RecordKeys, RenderSettings, SceneOrigin, StoredRecords, TransportScene, read_records,
 };
 use scene_format::{Diagnostic, Scene, mix_hash};
 use std::fs::File;
@@ -30,6 +30,7 @@ pub(super) fn reload_records(
     report: Option<SceneReport<'_>>,
 ) {
     commands.remove_resource::<RecordKeys>();
+    commands.remove_resource::<BorrowedRecords>();
     let (Some(plan), Some(scene), Some(settings), Some(camera), Some(mut report)) =
         (plan, scene, view.settings, view.camera, report)
     else {
@@ -52,11 +53,14 @@ pub(super) fn reload_records(
         commands.insert_resource(keys);
         if let Some(file) = file {
             match reload(&file, &keys, &plan, &scene) {
-                Ok((cache, is_complete)) => {
+                Ok((cache, borrowed)) => {
                     let counts = cache.0.each_ref().map(|cache| cache.records().len() as u32);
                     let reused = counts.iter().map(|count| u64::from(*count)).sum();
                     counters.counter("irradiance_cache/reused").add(reused);
-                    commands.insert_resource(plan.new_fill(false).after(counts, is_complete));
+                    commands.insert_resource(plan.new_fill(false).after(counts, borrowed.is_none()));
+                    if let Some(borrowed) = borrowed {
+                        commands.insert_resource(borrowed);
+                    }
                     commands.spawn_batch(entities_of(&cache));
                     commands.insert_resource(cache);
                 }
@@ -84,18 +88,22 @@ fn record_keys(scene: &Scene, settings: &RenderSettings, camera: &CameraFrame, o
     RecordKeys { light, view }
 }
 
-/// Reads the records of a file, and whether none is missing for this view.
+/// Reads the records of a file, and what it is to be known by where it is for another view, so that some may be missing.
 fn reload(
     path: &Path,
     keys: &RecordKeys,
     plan: &CachePlan,
     scene: &TransportScene,
-) -> Result<(BuiltIrradianceCache, bool), Box<Diagnostic>> {
+) -> Result<(BuiltIrradianceCache, Option<BorrowedRecords>), Box<Diagnostic>> {
     let refuse = |reason: String| {
         let message = format!("records cannot be taken from {}: {reason}", path.display());
         Box::new(Diagnostic::error("bad-records", message).note("or leave out `--records`"))
     };
-    let StoredRecords { is_complete, records } = File::open(path)
+    let StoredRecords {
+        is_complete,
+        checksum,
+        records,
+    } = File::open(path)
         .map_err(RecordFileError::from)
         .and_then(|file| read_records(&mut BufReader::new(file), keys))
         .map_err(|error| refuse(error.to_string()))?;
@@ -104,7 +112,7 @@ fn reload(
         *restored = transport::IrradianceCache::restore(settings, &scene.0.rays.bounds(), records)
             .map_err(|error| refuse(format!("it is damaged: {error}; write it anew with `pipeline records`")))?;
     }
-    Ok((cache, is_complete))
+    Ok((cache, (!is_complete).then_some(BorrowedRecords(checksum))))
 }
 
 /// The entities of the records of a cache.

@@ -39,11 +39,11 @@ pub(super) fn rotational(hemisphere: &Hemisphere, samples: &[HemisphereSample]) 
 /// (L_{t,p} − L_{t,p−1})/min(r_{t,p}, r_{t,p−1}))`, angles at the borders of cells, `u_p` the unit tangent at the middle of
 /// cell p, `v_p` that a quarter turn beyond its border.
 ///
-/// Noise makes gradients longer: of the square of the length, what the spread of samples within cells would make by itself is taken
-/// off, `∇_t E · max(0, 1 − σ²/|∇_t E|²)`.
+/// Noise makes gradients longer: of the square of the length, what the spread of samples within cells would make by itself is
+/// taken off, `∇_t E · max(0, 1 − σ²/|∇_t E|²)`.
 ///
-/// Source: Ward and Heckbert, "Irradiance Gradients", EGWR 1992. Differs: by strata that are joined before they are compared, and by
-/// the noise.
+/// Source: Ward and Heckbert, "Irradiance Gradients", EGWR 1992. Differs: by strata that are joined before they are compared,
+/// and by the noise.
 pub(super) fn translational(hemisphere: &Hemisphere, strata: &Strata) -> RgbGradient {
     let (rings, cells) = (hemisphere.rings(), hemisphere.cells());
     let (along_theta, along_phi) = (&strata.along_theta, &strata.along_phi);

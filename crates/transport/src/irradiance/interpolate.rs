@@ -47,10 +47,10 @@ impl IrradianceCache {
     ///
     /// `E(x) = Σ w_j (E_j + (n_j × n)·∇_r E_j + (x − x_j)·∇_t E_j)/Σ w_j`, over records with
     /// `ε_j/a = |x − x_j|/R_j + √(1 − n·n_j)/a < 1` whose plane the place lies in, 1/a = [`CacheSettings::read_weight`] and
-    /// R_j = [`CacheSettings::read_radius`]. `w_j = √t_j (1 − (ε_j/a)²)²`, without gradients `1/ε_j − 1/a`. Both fall to zero
+    /// `R_j` = [`CacheSettings::read_radius`]. `w_j = √t_j (1 − (ε_j/a)²)²`, without gradients `1/ε_j − 1/a`. Both fall to zero
     /// where a record ends, so that its end does not show.
     ///
-    /// t_j is one, or less where the range was widened to the least: how much of it was found. At a contact such a record is
+    /// `t_j` is one, or less where the range was widened to the least: how much of it was found. At a contact such a record is
     /// too dark for most of what it covers, and more are made there than further out. Above the skirting of `interior.ron` at
     /// 640×400 the first row of pixels is too dark by 2.5 % without the factor, right by 0.1 % with the root, and by the whole
     /// share too bright by 1.4 %.

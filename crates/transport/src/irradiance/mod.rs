@@ -46,8 +46,9 @@ pub enum ErrorMetric {
 }
 
 impl ErrorMetric {
-    /// How many times as far as the nearest thing a range may be, and how much faster than the distance it may grow from record to
-    /// record: ranges by the harmonic mean are distances of things; those by the Hessian reach half as far as a thing, at 1/a = 10.
+    /// How many times as far as the nearest thing a range may be, and how much faster than the distance it may grow from
+    /// record to record: ranges by the harmonic mean are distances of things; those by the Hessian reach half as far as a
+    /// thing, at 1/a = 10.
     pub(super) fn ranges_per_distance(self) -> f32 {
         match self {
             Self::OcclusionHessian => 5.0,

@@ -19,8 +19,8 @@ pub struct Spacing {
 const USUAL_WEIGHT: f32 = 10.0;
 
 /// Square of the radius within which a record holds, in pixels times √(E/|∇²E|), at the usual 1/a. Measured on `interior.ron` at
-/// 320×200, 3,000 rays: half of it makes 24 % more records, four times it 16 % fewer; blocks are off by 0.98 and 1.13 % at the median
-/// then, and by 0.96 % as it is.
+/// 320×200, 3,000 rays: half of it makes 24 % more records, four times it 16 % fewer; blocks are off by 0.98 and 1.13 % at
+/// the median then, and by 0.96 % as it is.
 const TOLERANCE: f32 = 0.5;
 
 /// Makes a record of what the rays of a hemisphere saw.
@@ -29,8 +29,8 @@ const TOLERANCE: f32 = 0.5;
 ///
 /// By the Hessian it is `r ∝ √(pixel √(E/|∇²E|))`: a linear change is off by about `|∇²E| R²/4` in the mean over a disc, and the
 /// sum over all pixels of that error relative to E is least, for a number of records, where R⁴ is in proportion to the pixel's
-/// area and `E/|∇²E|`. What the rays did not meet is not in the Hessian, so that no record holds further than half the distance of
-/// the nearest thing, at the usual 1/a.
+/// area and `E/|∇²E|`. What the rays did not meet is not in the Hessian, so that no record holds further than half the
+/// distance of the nearest thing, at the usual 1/a.
 ///
 /// By the harmonic mean it is no more than where a linear change would have doubled or ended the light; by the Hessian five times
 /// that, so that at the usual 1/a half the change fits into the radius.
