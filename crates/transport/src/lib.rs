@@ -41,6 +41,7 @@ mod photon;
 mod photon_maps;
 mod projection;
 mod radiosity;
+mod reflectance;
 mod scene;
 mod textures;
 mod thinning;

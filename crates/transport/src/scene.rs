@@ -1,11 +1,12 @@
 use crate::light::{LightSource, LightTable};
 use crate::projection::{TargetSphere, cluster_targets};
+use crate::reflectance::ReflectanceTable;
 use crate::textures::{SurfaceInputs, TexturedSurface};
 use glam::Vec3;
 use radiometry::Rgb;
 use scattering::{Bsdf, Dispersion, Interior};
 use spatial::{Bounds, RayScene, SurfacePoint};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What a surface is made of.
 #[derive(Clone, Debug, Default)]
@@ -110,6 +111,8 @@ pub struct Scene {
     pub lights: LightTable,
     materials: Vec<Material>,
     material_of_instance: Vec<u32>,
+    /// Of each material that was asked for it.
+    reflectances: Vec<OnceLock<ReflectanceTable>>,
     targets: Vec<TargetSphere>,
     diffuse_area: f64,
     /// Of each instance.
@@ -200,6 +203,7 @@ impl Scene {
         Self {
             rays,
             lights,
+            reflectances: materials.iter().map(|_| OnceLock::new()).collect(),
             materials,
             material_of_instance,
             targets,
@@ -237,6 +241,16 @@ impl Scene {
     #[must_use]
     pub fn material_by_row(&self, row: u32) -> &Material {
         &self.materials[row as usize]
+    }
+
+    /// What the D lobes of a surface reflect of even light; `None` where that changes from point to point. Made when it is first
+    /// asked for.
+    #[inline]
+    pub(crate) fn reflectance_table(&self, point: &SurfacePoint) -> Option<&ReflectanceTable> {
+        let row = self.material_row(point);
+        let material = self.material_by_row(row);
+        let table = || self.reflectances[row as usize].get_or_init(|| ReflectanceTable::of(&material.bsdf));
+        material.textured.is_none().then(table)
     }
 
     /// How much of the surface is there at a point that was hit, in [0, 1].

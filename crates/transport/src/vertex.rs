@@ -1,8 +1,9 @@
 use crate::guide::Guide;
 use crate::medium::PathMedium;
+use crate::reflectance::estimate_reflectance;
 use crate::scene::Scene;
 use glam::{Vec2, Vec3};
-use radiometry::{Frame, Rgb, math, warp};
+use radiometry::{Frame, Rgb, SampleStream};
 use scattering::{Bsdf, BsdfSample, LobeValues, Transport};
 use spatial::SurfacePoint;
 
@@ -140,30 +141,23 @@ impl<'a> Vertex<'a> {
         self.frame.z.dot(self.point.ns) < FLAT
     }
 
-    /// Estimates the share of even light from the side of the eye that the D lobes reflect, `ρ_hd = ∫ f_d cosθ_i dω_i`.
+    /// The share of even light from the side of the eye that the D lobes reflect, `ρ_hd = ∫ f_d cosθ_i dω_i`.
     ///
-    /// Exact where the surface scatters by one Lambertian lobe; else a mean over some stratified
-    /// directions, without bias for uniform `u`.
+    /// Of one Lambertian lobe it is the albedo, of a material that is the same everywhere it stands in a table; else it is estimated
+    /// from some directions, without bias.
+    ///
+    /// - `scene`: that the point is of.
+    /// - `stream`: random numbers of the path that arrived, `bounce` the vertex.
     #[inline]
     #[must_use]
-    pub fn diffuse_reflectance(&self, u: Vec2) -> Rgb {
+    pub fn diffuse_reflectance(&self, scene: &Scene, stream: &SampleStream, bounce: u32) -> Rgb {
         if let Bsdf::Diffuse(diffuse) = &self.bsdf {
             return diffuse.albedo();
         }
-        let value = |i: u32| {
-            let shift = (i as f32 + 0.5) * (1.0 / REFLECTANCE_DIRECTIONS as f32);
-            // The second coordinates of Hammersley's points: the bits of the first, mirrored.
-            let mirrored = (i.reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0);
-            let point = Vec2::new(math::fract(u.x + shift), math::fract(u.y + mirrored));
-            let local = warp::sample_cosine_hemisphere(point);
-            let cos = local.z.max(1e-6);
-            self.bsdf
-                .eval(self.wo_local, self.toward_eye(local), Transport::Radiance)
-                .diffuse
-                * (1.0 / cos)
-        };
-        let sum: Rgb = (0..REFLECTANCE_DIRECTIONS).map(value).sum();
-        sum * (std::f32::consts::PI / REFLECTANCE_DIRECTIONS as f32)
+        match scene.reflectance_table(self.point) {
+            Some(table) => table.at(self.wo_local.z),
+            None => estimate_reflectance(&self.bsdf, self.wo_local, stream, bounce),
+        }
     }
 
     /// The value of a Lambertian reflection, albedo/π, where the surface is one and flat; `None` elsewhere.
@@ -256,9 +250,6 @@ pub(crate) fn soften_terminator(cos_geometric: f32, cos_shading: f32, cos_normal
     let g = cos_geometric / (cos_shading * cos_normals.max(1e-3));
     if g >= 1.0 { 1.0 } else { g * (1.0 + g - g * g) }
 }
-
-/// Directions of a reflectance that is not known in closed form.
-const REFLECTANCE_DIRECTIONS: u32 = 8;
 
 /// Normals closer than this cosine (0.08°) count as one.
 const FLAT: f32 = 0.999_999;

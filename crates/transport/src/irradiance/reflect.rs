@@ -9,9 +9,6 @@ use radiometry::{Frame, Rgb, StageKey, warp};
 use spatial::{Ray, spawn_origin};
 use std::f32::consts::FRAC_1_PI;
 
-/// Key of the random numbers of reflectances.
-const REFLECT_STAGE: StageKey = StageKey::new("irradiance_cache/reflectance");
-
 /// Key of those of rays to deep places.
 const DEEP_STAGE: StageKey = StageKey::new("irradiance_cache/deep");
 
@@ -74,9 +71,11 @@ pub fn reflect_irradiance(
     let Some(found) = cache.interpolate(position, normal, sees) else {
         return CacheAnswer::Missing;
     };
-    let u = path.stream.split(REFLECT_STAGE, 1, 0).draw_2d(path.depth, 0);
     CacheAnswer::Light {
-        radiance: path.throughput * vertex.diffuse_reflectance(u) * found.irradiance * FRAC_1_PI,
+        radiance: path.throughput
+            * vertex.diffuse_reflectance(scene, &path.stream, path.depth)
+            * found.irradiance
+            * FRAC_1_PI,
         record_density: found.record_density,
         blur: found.blur,
     }
