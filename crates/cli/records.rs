@@ -12,7 +12,7 @@ use bevy_app::App;
 use bevy_ecs::world::World;
 use film::{WriteError, atomic_write};
 use pipeline_core::RenderClock;
-use pipeline_data::{IrradianceRecord, RecordKeys, RecordsByDepth, SceneOrigin, write_records};
+use pipeline_data::{BorrowedRecords, IrradianceRecord, RecordKeys, RecordsByDepth, SceneOrigin, write_records};
 use std::io;
 use std::path::Path;
 
@@ -70,8 +70,9 @@ fn write_own(world: &World, path: &Path, records: &[IrradianceRecord]) -> Result
     let of_depth = |depth: usize| records.iter().filter(move |entity| entity.depth as usize == depth);
     let by_depth: RecordsByDepth = std::array::from_fn(|depth| of_depth(depth).map(|entity| entity.record).collect());
     let origin = *world.resource::<SceneOrigin>();
+    let borrowed = world.get_resource::<BorrowedRecords>().copied();
     atomic_write(path, |file| match world.get_resource::<RecordKeys>() {
-        Some(keys) => write_records(file, keys, origin, &by_depth),
+        Some(keys) => write_records(file, keys, borrowed, origin, &by_depth),
         // To keep these was refused before any was made.
         None => Err(io::Error::other("records that change during a render cannot be kept")),
     })

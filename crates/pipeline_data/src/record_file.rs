@@ -5,9 +5,10 @@
 //! | bytes | what |
 //! |---|---|
 //! | 8 | `PIPERECS` |
-//! | 4 | version, 1 |
+//! | 4 | version, 2 |
 //! | 32 | first key: a hash of whatever decides the light of the records |
 //! | 32 | second key: a hash of the view that they were made for |
+//! | 8 | checksum of a file for another view that these began with, 0 if there was none |
 //! | 24 | origin: the point of the scene file's world that positions count from, three f64 in metres |
 //! | 8 | of each depth, that of the records that the eye reads first: number n of records |
 //! | 120 n | its records, numbers in f32: position (3, metres), normal (3, unit), irradiance (3, W·m⁻²), its gradient as the normal turns (9, W·m⁻² per radian: x, y, z of red, of green, of blue) and as the place moves (9, W·m⁻³), range, least range, distance of what is nearest (metres, infinite where there is nothing) |
@@ -24,7 +25,7 @@ use transport::{IrradianceRecord, RgbGradient};
 
 const KIND: FileKind = FileKind {
     magic: *b"PIPERECS",
-    version: 1,
+    version: 2,
     noun: "record",
     command: "records",
 };
@@ -47,8 +48,8 @@ pub struct RecordKeys {
     pub view: [u8; 32],
 }
 
-/// Checksum of a file of records for another view, which the cache began with: the image has other bits than without. Written by
-/// `irradiance_cache`; absent where there is no such file.
+/// Checksum of the file of records for another view that the cache began with: the image has other bits than without. Written by
+/// `irradiance_cache`; absent where there was none.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BorrowedRecords(pub u64);
 
@@ -57,8 +58,8 @@ pub struct BorrowedRecords(pub u64);
 pub struct StoredRecords {
     /// Whether they were made for the same view, so that none is missing.
     pub is_complete: bool,
-    /// Of the file.
-    pub checksum: u64,
+    /// What an image of them depends on: this file, if it is for another view, or the one for another view that it began with.
+    pub borrowed: Option<BorrowedRecords>,
     /// By depth and number.
     pub records: RecordsByDepth,
 }
@@ -98,17 +99,21 @@ impl From<io::Error> for RecordFileError {
 
 /// Writes records so that [`read_records`] restores them bit for bit.
 ///
+/// - `borrowed`: what the cache began with.
+///
 /// # Errors
 /// Whatever the writer reports. Give it a buffered one, within [`film::atomic_write`].
 pub fn write_records(
     writer: &mut impl Write,
     keys: &RecordKeys,
+    borrowed: Option<BorrowedRecords>,
     origin: SceneOrigin,
     records: &RecordsByDepth,
 ) -> io::Result<()> {
     let mut file = CheckedWriter::begin(writer, &KIND)?;
     file.put(&keys.light)?;
     file.put(&keys.view)?;
+    file.put(&borrowed.map_or(0, |borrowed| borrowed.0).to_le_bytes())?;
     for coordinate in origin.0.to_array() {
         file.put(&coordinate.to_le_bytes())?;
     }
@@ -133,6 +138,7 @@ pub fn read_records(reader: &mut impl Read, keys: &RecordKeys) -> Result<StoredR
         return Err(RecordFileError::Key);
     }
     let is_complete = file.take()? == keys.view;
+    let began_with = u64::from_le_bytes(file.take()?);
     // The key covers the geometry, and so the origin; it stands there for other programs.
     file.take::<24>()?;
     let mut records = RecordsByDepth::default();
@@ -140,9 +146,10 @@ pub fn read_records(reader: &mut impl Read, keys: &RecordKeys) -> Result<StoredR
         *records = file.rows(good_record)?;
     }
     let checksum = file.end()?;
+    let borrowed = if is_complete { began_with } else { checksum };
     Ok(StoredRecords {
         is_complete,
-        checksum,
+        borrowed: (borrowed != 0).then_some(BorrowedRecords(borrowed)),
         records,
     })
 }
@@ -244,6 +251,8 @@ mod tests {
         view: [8; 32],
     };
 
+    const BORROWED: Option<BorrowedRecords> = Some(BorrowedRecords(5));
+
     fn record(i: u32) -> IrradianceRecord {
         let number = i as f32;
         let slope = |scale: f32| RgbGradient([0.0, 1.0, 2.0].map(|c| Vec3::new(scale, -c, number)));
@@ -265,7 +274,7 @@ mod tests {
 
     fn bytes_with(records: &RecordsByDepth) -> Vec<u8> {
         let mut bytes = Vec::new();
-        write_records(&mut bytes, &KEYS, SceneOrigin::default(), records).unwrap();
+        write_records(&mut bytes, &KEYS, BORROWED, SceneOrigin::default(), records).unwrap();
         bytes
     }
 
@@ -287,10 +296,12 @@ mod tests {
     #[test]
     fn what_is_written_is_read_again() {
         let stored = read(&bytes_with(&records())).unwrap();
-        assert!(stored.is_complete && stored.records == records());
+        assert!(stored.is_complete && stored.borrowed == BORROWED && stored.records == records());
         let of_another_view = RecordKeys { view: [9; 32], ..KEYS };
         let stored = read_records(&mut &*bytes_with(&records()), &of_another_view).unwrap();
         assert!(!stored.is_complete && stored.records == records());
+        // The image depends on this file then.
+        assert!(stored.borrowed.is_some() && stored.borrowed != BORROWED);
         let of_other_light = RecordKeys { light: [9; 32], ..KEYS };
         let error = read_records(&mut &*bytes_with(&records()), &of_other_light).unwrap_err();
         assert!(matches!(error, RecordFileError::Key), "{error}");
@@ -312,7 +323,7 @@ mod tests {
 
     #[test]
     fn a_file_that_claims_too_much_takes_no_memory_for_it() {
-        let mut bytes = bytes_with(&RecordsByDepth::default())[..8 + 4 + 32 + 32 + 24].to_vec();
+        let mut bytes = bytes_with(&RecordsByDepth::default())[..8 + 4 + 32 + 32 + 8 + 24].to_vec();
         bytes.extend(u64::MAX.to_le_bytes());
         assert!(is_cut_off(&read(&bytes).unwrap_err()));
     }

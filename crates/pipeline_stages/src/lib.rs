@@ -70,19 +70,19 @@ impl Plugin for DefaultStages {
             image::ImagePlugin,
         ));
         // These report trouble and set the clock when they prepare. Photons are planned after whoever asks for them, records are
-        // taken from a file before a film is from a checkpoint, which has to know them, and the camera comes last: it cuts the
-        // samples that the film lacks into passes.
+        // taken from a file before a film is from a checkpoint, which has to know them, radiosity takes its time when no other trouble
+        // is left, and then the camera cuts the samples that the film lacks into passes.
         app.configure_sets(
             Prepare,
             (
                 path_guiding::PathGuidingSystems,
                 final_gather::FinalGatherSystems,
-                radiosity::RadiositySystems,
                 irradiance_cache::IrradianceCacheSystems,
                 photon_map::PhotonMapSystems,
                 photon_thinning::PhotonThinningSystems,
                 irradiance_cache::RecordFileSystems,
                 image::ImageSystems,
+                radiosity::RadiositySystems,
                 camera::CameraSystems,
                 depth_of_field::DepthOfFieldSystems,
             )

@@ -245,12 +245,12 @@ fn patches_and_form_factors_have_a_bound() {
         most: 1000,
     };
     let refused = PatchField::place(&scene, &tiny).expect_err("too many");
-    let PlaceError::TooMany { points, least_size } = refused else {
+    let PlaceError::TooMany { points, possible_size } = refused else {
         panic!("{refused:?}")
     };
     assert!(points > 1e9);
     let enough = PlaceSettings {
-        size: Some(least_size),
+        size: possible_size,
         ..tiny
     };
     let mut field = PatchField::place(&scene, &enough).expect("what was advised");

@@ -3,7 +3,7 @@
 //! Scene: `Film: (resolution: …, exposure: …, tone_map: …)` on the render prim.
 //! Sets: `PrepareStages` (`allocate_film`), `Shade` (`record_first_hits`), `Accumulate` (`accumulate_batches`,
 //! `estimate_error`), `Resolve` (`resolve_film`), `Write` (`write_images`).
-//! Reads the contributions of every term. Writes the film and the files that the request names.
+//! Reads the contributions of every term, and which records of another view a cache began with. Writes the film and the files that the request names.
 //! Counters: `image/samples`, `image/rejected samples` (NaN, negative or infinite; dropped at this one guard).
 //!
 //! Sums are exact (fixed point), so no order of waves, tiles or threads changes a bit. An interrupted render leaves a

@@ -4,8 +4,8 @@
 //! Sets: `PrepareStages` (`plan_cache`, `reload_records`), `DeriveFromMaps` (`renew_records`), all of `CachePass`
 //! (`generate_rays`, `find_sites`, `choose_sites`, `sample_records`, `insert_records`, `maintain_octree`), `LookUp`
 //! (`look_up_irradiance`). Reads the transport scene, the settings, the camera, and photon maps where `incoming` says so.
-//! Writes entities with [`IrradianceRecord`](pipeline_data::IrradianceRecord), the cache over them, their keys,
-//! contributions, and the film layer `record_density`: records of each square metre around what is seen first, m⁻²
+//! Writes entities with [`IrradianceRecord`](pipeline_data::IrradianceRecord), the cache over them, their keys, which
+//! records of another view they began with, whether photons are wanted, contributions, and the film layer `record_density`: records of each square metre around what is seen first, m⁻²
 //! ([`RecordDensity`]). Counters: `irradiance_cache/records` that were made, `irradiance_cache/reused` from a file,
 //! `irradiance_cache/rays`, `irradiance_cache/lookups`, of these `irradiance_cache/missing` where no record held, and
 //! `irradiance_cache/unsuited`.
@@ -14,7 +14,7 @@
 //! to one, are followed along S lobes to where the eye asks for indirect light. Where nothing in the cache tells, a record is
 //! made. All places of a round are judged by the same cache, thinned in a fixed order so that neighbours do not compute the
 //! same, sampled in parallel, and inserted in a fixed order. After that the cache is only read. A record's random numbers depend
-//! on its number alone, so the image is the same whatever the threads.
+//! on its place in that order alone, so the image is the same whatever the threads.
 //!
 //! Rays of records do not go on as paths: where they end they read deeper records, sparse and wide, for the light of further
 //! reflections, which then has the noise of their mean, not that of a single path. Deep records lie where rays of those

@@ -53,11 +53,11 @@ pub(super) fn reload_records(
         commands.insert_resource(keys);
         if let Some(file) = file {
             match reload(&file, &keys, &plan, &scene) {
-                Ok((cache, borrowed)) => {
+                Ok((cache, is_complete, borrowed)) => {
                     let counts = cache.0.each_ref().map(|cache| cache.records().len() as u32);
                     let reused = counts.iter().map(|count| u64::from(*count)).sum();
                     counters.counter("irradiance_cache/reused").add(reused);
-                    commands.insert_resource(plan.new_fill(false).after(counts, borrowed.is_none()));
+                    commands.insert_resource(plan.new_fill(false).after(counts, is_complete));
                     if let Some(borrowed) = borrowed {
                         commands.insert_resource(borrowed);
                     }
@@ -88,20 +88,20 @@ fn record_keys(scene: &Scene, settings: &RenderSettings, camera: &CameraFrame, o
     RecordKeys { light, view }
 }
 
-/// Reads the records of a file, and what it is to be known by where it is for another view, so that some may be missing.
+/// Reads the records of a file, whether none is missing for this view, and what an image of them depends on.
 fn reload(
     path: &Path,
     keys: &RecordKeys,
     plan: &CachePlan,
     scene: &TransportScene,
-) -> Result<(BuiltIrradianceCache, Option<BorrowedRecords>), Box<Diagnostic>> {
+) -> Result<(BuiltIrradianceCache, bool, Option<BorrowedRecords>), Box<Diagnostic>> {
     let refuse = |reason: String| {
         let message = format!("records cannot be taken from {}: {reason}", path.display());
         Box::new(Diagnostic::error("bad-records", message).note("or leave out `--records`"))
     };
     let StoredRecords {
         is_complete,
-        checksum,
+        borrowed,
         records,
     } = File::open(path)
         .map_err(RecordFileError::from)
@@ -112,7 +112,7 @@ fn reload(
         *restored = transport::IrradianceCache::restore(settings, &scene.0.rays.bounds(), records)
             .map_err(|error| refuse(format!("it is damaged: {error}; write it anew with `pipeline records`")))?;
     }
-    Ok((cache, (!is_complete).then_some(BorrowedRecords(checksum))))
+    Ok((cache, is_complete, borrowed))
 }
 
 /// The entities of the records of a cache.

@@ -65,13 +65,17 @@ pub(super) fn choose_sites(
     record_items(fill.missing.len());
     let filled = &cache.0[fill.depth];
     let missing = std::mem::take(&mut fill.missing);
-    let mut missing: Vec<Site> = missing
-        .into_par_iter()
-        .filter(|site| !site.is_covered(&scene.0, filled))
-        .collect();
     let most = (MOST_RAYS / plan.hemisphere.rays()).max(1) as usize;
     let spacing = plan.spacing[fill.depth].min_pixels.max(fill.step as f32);
-    let is_chosen = thin(&missing, spacing, most, &scene.0.rays.bounds());
+    let bounds = scene.0.rays.bounds();
+    // A place that no octree takes is left to paths: there would be no end to asking for it.
+    let octree = RecordOctree::new(&bounds, CELL_RECORDS);
+    let can_have = |site: &Site| octree.accepts(site.position, spacing * site.pixel).is_ok();
+    let mut missing: Vec<Site> = missing
+        .into_par_iter()
+        .filter(|site| can_have(site) && !site.is_covered(&scene.0, filled))
+        .collect();
+    let is_chosen = thin(&missing, spacing, most, &bounds);
     let mut number = 0;
     fill.chosen.clear();
     missing.retain(|site| {
@@ -101,7 +105,6 @@ pub(super) fn thin(sites: &[Site], spacing: f32, most: usize, bounds: &Bounds) -
         if octree.containing(site.position).any(does_for_both) {
             continue;
         }
-        // A place that cannot be in an octree cannot be in the cache either.
         if octree.insert(site.position, spacing * site.pixel).is_ok() {
             taken.push(row);
             is_chosen[row as usize] = true;

@@ -87,9 +87,12 @@ fn place(scene: &Scene, plan: &RadiosityPlan) -> Result<PatchField, Box<Diagnost
         most: MOST_POINTS,
     };
     let refusal = |error| match error {
-        PlaceError::TooMany { points, least_size } => {
+        PlaceError::TooMany { points, possible_size } => {
             let message = format!("radiosity would take {points:.0} patches; at most {MOST_POINTS} are used");
-            let remedy = format!("let `Radiosity.patch_size` be {least_size:.2e} or more");
+            let remedy = possible_size.map_or_else(
+                || "there are too many surfaces; join them, or let `LightTransport.indirect` be another".to_owned(),
+                |size| format!("let `Radiosity.patch_size` be {size:.2e} or more"),
+            );
             Diagnostic::error("too-large", message).note(remedy)
         }
         PlaceError::Broken => Diagnostic::error("too-large", "no patches can be laid over this scene")

@@ -30,8 +30,8 @@ impl CacheSettings {
         (self.min_weight / wider).max(1.0)
     }
 
-    /// Distance within which a record is read, metres. Where the range is widened to the least it is no further than where no
-    /// other record is made: it would blur what is near a contact.
+    /// Distance within which a record is read, metres: by the range that was found. The least range counts no further than where no
+    /// other record is made, or it would blur what is near a contact.
     #[inline]
     #[must_use]
     pub fn read_radius(&self, record: &IrradianceRecord) -> f32 {
@@ -46,7 +46,7 @@ impl CacheSettings {
 pub struct IrradianceCache {
     pub(super) settings: CacheSettings,
     pub(super) records: Vec<IrradianceRecord>,
-    /// Over the spheres within which records hold.
+    /// Over the spheres within which records are read.
     pub(super) octree: RecordOctree,
     neighbours: Neighbours,
 }
@@ -97,8 +97,8 @@ impl IrradianceCache {
         self.octree.accepts(record.position, record.range)
     }
 
-    /// Adds records behind those that there are, and lowers the ranges of these and of their neighbours until none exceeds
-    /// that of another by more than the distance between the two, times what the metric lets it.
+    /// Adds records behind those that there are, and lowers the ranges of these and of their neighbours until none exceeds that of
+    /// another, in whose range it lies, by more than the distance between the two, times what the metric lets it.
     ///
     /// Source: Křivánek et al., "Making Radiance and Irradiance Caching Practical", EGSR 2006, section 3.3.
     ///

@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 /// a place than from a neighbour and the way there: `r_i ≤ r_j + s |x_i − x_j|`, where s is one if ranges are distances.
 #[derive(Clone, Debug)]
 pub(super) struct Neighbours {
-    /// Over the spheres of ranges as they were when records came.
+    /// Over spheres of ranges as they were when records came, each divided by the slope: further out no range is lowered.
     octree: RecordOctree,
     /// s: by how much a range may grow with the distance.
     slope: f32,

@@ -9,7 +9,7 @@ const FRONT_TOLERANCE: f32 = 0.1;
 /// Rays may have missed what is nearest; up to this share of the nearest that they met there is nothing.
 const CLEAR_SHARE: f32 = 0.5;
 
-/// ε a of the error at the record itself, so that the weight of the plain form is finite there.
+/// ε/a at the record itself, so that the weight of the plain form is finite there.
 const LEAST_ERROR: f32 = 0.01;
 
 /// What records tell of a place.
@@ -45,7 +45,7 @@ impl IrradianceCache {
 
     /// Interpolates the irradiance at a place between the records that hold there; `None` where none does.
     ///
-    /// `E(x) = Σ w_j (E_j + (n_j × n)·∇_r E_j + (x − x_j)·∇_t E_j)/Σ w_j`, over records with
+    /// `E(x) = Σ w_j (E_j + (n_j × n)·∇_r E_j + t_j (x − x_j)·∇_t E_j)/Σ w_j`, over records with
     /// `ε_j/a = |x − x_j|/R_j + √(1 − n·n_j)/a < 1` whose plane the place lies in, 1/a = [`CacheSettings::read_weight`] and
     /// `R_j` = [`CacheSettings::read_radius`]. `w_j = √t_j (1 − (ε_j/a)²)²`, without gradients `1/ε_j − 1/a`. Both fall to zero
     /// where a record ends, so that its end does not show.

@@ -46,9 +46,9 @@ pub enum ErrorMetric {
 }
 
 impl ErrorMetric {
-    /// How many times as far as the nearest thing a range may be, and how much faster than the distance it may grow from
-    /// record to record: ranges by the harmonic mean are distances of things; those by the Hessian reach half as far as a
-    /// thing, at 1/a = 10.
+    /// How much faster than the distance a range may grow from record to record, and how many ranges make the distance over which a
+    /// linear change doubles or ends the light: ranges by the harmonic mean are distances of things; those by the Hessian reach half
+    /// as far as the nearest thing, at 1/a = 10, and no further.
     pub(super) fn ranges_per_distance(self) -> f32 {
         match self {
             Self::OcclusionHessian => 5.0,
@@ -105,7 +105,8 @@ pub struct IrradianceRecord {
     pub rotation: RgbGradient,
     /// How E changes as the place moves: W·m⁻² per metre.
     pub translation: RgbGradient,
-    /// r: distance at which E has changed by about itself, metres. Neighbours may lower it.
+    /// r, metres: 1/a times the radius within which the record holds. By the harmonic mean, about the distance at which E has
+    /// changed by itself. Neighbours may lower it.
     pub range: f32,
     /// The range counts as no less than this, so that corners do not fill up with records, metres.
     pub least_range: f32,

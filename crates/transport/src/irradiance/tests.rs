@@ -258,27 +258,67 @@ fn what_a_wall_hides_is_asked_of_records_with_something_near() {
 }
 
 #[test]
+fn widened_records_are_read_no_wider_and_count_for_less() {
+    let widened = IrradianceRecord {
+        least_range: 0.2,
+        translation: RgbGradient([Vec3::X * 10.0; 3]),
+        ..record(Vec3::ZERO, 0.05, 1.0)
+    };
+    let ask = |cache: &IrradianceCache, x: f32| {
+        let found = cache.interpolate(Vec3::X * x, Vec3::Z, |_| true);
+        found.map(|found| found.irradiance.r)
+    };
+    let alone = cache_of(&[widened], true);
+    // A quarter of the range was found, so the change is a quarter, and at 1/a = 10 the least range reaches 20 mm.
+    let value = ask(&alone, 0.01).expect("near");
+    assert!((value - 1.025).abs() < 1e-6, "{value}");
+    assert!(ask(&alone, 0.0199).is_some() && ask(&alone, 0.0201).is_none());
+    assert!(alone.covers(Vec3::X * 0.0199, Vec3::Z, |_| true));
+    // One that was not widened is read further than no other is made.
+    let other = record(Vec3::X * 0.01, 0.2, 3.0);
+    let found = cache_of(&[other], true);
+    assert!(ask(&found, 0.045).is_some() && !found.covers(Vec3::X * 0.045, Vec3::Z, |_| true));
+    // Weights at the place of the first: the root of a quarter, and that of the other by its distance. Its neighbour has lowered
+    // its range.
+    let other = record(Vec3::X * 0.004, 0.2, 3.0);
+    let reach = (0.05 + 0.004) / SETTINGS.read_weight();
+    let rest = 1.0 - (0.004 / reach) * (0.004 / reach);
+    let weight = rest * rest;
+    let value = ask(&cache_of(&[widened, other], true), 0.0).expect("near");
+    let expected = (0.5 + 3.0 * weight) / (0.5 + weight);
+    assert!((value - expected).abs() < 1e-5, "{value} {expected}");
+}
+
+#[test]
 fn ranges_end_where_neighbours_say() {
     let draw = |row: u32| SampleStream::new(8, StageKey::new("ranges"), 0, row).draw_2d(0, 0);
-    let records: Vec<IrradianceRecord> = (0..300)
-        .map(|row| {
-            let (place, size) = (draw(row), draw(row + 1000).x);
-            record(Vec3::new(place.x, place.y, 0.0), 0.02 + size * size, 1.0)
-        })
-        .collect();
-    let mut in_parts = cache_of(&records[..100], true);
-    assert_eq!(in_parts.insert(&records[100..]), Ok(()));
-    for cache in [cache_of(&records, true), in_parts] {
-        let mut lowered = 0;
-        for (row, one) in cache.records().iter().enumerate() {
-            lowered += usize::from(one.range < records[row].range);
-            for (other_row, other) in cache.records().iter().enumerate() {
-                let distance = one.position.distance(other.position);
-                let is_in_range = distance < records[other_row].range;
-                assert!(one.range <= other.range + distance || !is_in_range || row < other_row);
+    for metric in [ErrorMetric::HarmonicMean, ErrorMetric::OcclusionHessian] {
+        let slope = metric.ranges_per_distance();
+        let records: Vec<IrradianceRecord> = (0..300)
+            .map(|row| {
+                let (place, size) = (draw(row), draw(row + 1000).x);
+                record(Vec3::new(place.x, place.y, 0.0), slope * (0.02 + size * size), 1.0)
+            })
+            .collect();
+        let filled = |parts: &[&[IrradianceRecord]]| {
+            let mut cache = IrradianceCache::new(CacheSettings { metric, ..SETTINGS }, &ROOM);
+            for part in parts {
+                assert_eq!(cache.insert(part), Ok(()));
             }
+            cache
+        };
+        for cache in [filled(&[&records]), filled(&[&records[..100], &records[100..]])] {
+            let mut lowered = 0;
+            for (row, one) in cache.records().iter().enumerate() {
+                lowered += usize::from(one.range < records[row].range);
+                for (other_row, other) in cache.records().iter().enumerate() {
+                    let distance = one.position.distance(other.position);
+                    let is_in_range = slope * distance < records[other_row].range;
+                    assert!(one.range <= other.range + slope * distance || !is_in_range || row < other_row);
+                }
+            }
+            assert!(lowered > 100, "{lowered}");
         }
-        assert!(lowered > 100, "{lowered}");
     }
 }
 

@@ -142,7 +142,7 @@ fn follow(
     }
 }
 
-/// Adds up links to the same patch, in the order of rays.
+/// Adds up links to the same patch, in the order of rays, and gives memory back.
 fn merge(links: &mut Vec<(u32, Rgb)>) {
     links.sort_by_key(|(patch, _)| *patch);
     links.dedup_by(|later, first| {
@@ -152,6 +152,8 @@ fn merge(links: &mut Vec<(u32, Rgb)>) {
         }
         is_same
     });
+    // There may have been as many as rays.
+    links.shrink_to_fit();
 }
 
 fn point_of(patch: &Patch) -> SurfacePoint {

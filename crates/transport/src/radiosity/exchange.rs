@@ -58,7 +58,8 @@ pub fn find_direct(
 /// Finds the form factors of all patches that light can reach, and adds the lights that rays meet to their direct irradiance.
 ///
 /// Begins with the sides of surfaces that are lit directly, anywhere, and goes on to those that are seen from there: the
-/// insides of closed things take no time. Where nothing is lit directly, all sides are looked at.
+/// insides of closed things take no time. Where nothing is lit directly, or light may come over S surfaces from anywhere, all sides are
+/// looked at.
 ///
 /// - `step`: told how many patches are done, now and then; false stops.
 ///
@@ -77,7 +78,7 @@ pub fn find_form_factors(
     let all = 0..field.patches.len() as u32;
     let is_lit = |row: &u32| !field.patches[*row as usize].direct.is_black();
     let mut wave: BTreeSet<_> = all.clone().filter(is_lit).map(|row| side(field, row)).collect();
-    if wave.is_empty() {
+    if wave.is_empty() || !scene.specular_targets().is_empty() {
         wave = all.clone().map(|row| side(field, row)).collect();
     }
     let (mut done, mut links) = (0, 0);
