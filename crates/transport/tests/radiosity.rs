@@ -5,6 +5,7 @@ mod common;
 use common::{at, black, diffuse, floor, glass, point_light, scene};
 use glam::{DAffine3, DVec3, Vec2, Vec3};
 use radiometry::Rgb;
+use scattering::{Bsdf, DielectricBsdf, Microsurface};
 use spatial::{Ray, Shape};
 use std::f64::consts::PI;
 use transport::{
@@ -27,7 +28,7 @@ fn place(scene: &Scene, points: u32) -> PatchField {
     PatchField::place(scene, &settings).expect("few patches")
 }
 
-/// Form factors of all sides: nothing is lit, so all are looked at.
+/// Form factors of all sides where nothing is lit, and so all are looked at.
 fn factors(scene: &Scene, field: &mut PatchField) -> FormFactors {
     find_form_factors(scene, field, &EXCHANGE, |_| true).expect("few form factors")
 }
@@ -186,6 +187,44 @@ fn light_goes_on_over_mirrors_and_through_glass() {
     let through = with(glass(0.0));
     // Some 9 % are reflected at 1.5, more at an angle.
     assert!((0.15..0.19).contains(&through), "{through}");
+}
+
+#[test]
+fn a_room_that_only_a_lamp_behind_glass_lights_is_not_dark() {
+    let cube = |side: f32| Shape::Cuboid {
+        size: Vec3::splat(side),
+    };
+    let middle = at(0.0, 0.0, 0.0);
+    // It bends and reflects no light, but who samples lights does not see through it.
+    let clear = Material {
+        bsdf: Bsdf::Dielectric(DielectricBsdf::new(1.0, Rgb::WHITE, Microsurface::SMOOTH)),
+        ..Material::default()
+    };
+    let shapes = [
+        (cube(2.0), middle, diffuse(0.5)),
+        (cube(0.4), middle, black()),
+        (cube(0.6), middle, clear),
+    ];
+    let lamp = LightSource::Area {
+        instance: 1,
+        radiance: Rgb::splat(1.0),
+        texture: None,
+        two_sided: false,
+    };
+    // It lights the outside alone, where no ray finds a way in.
+    let sun = LightSource::Distant {
+        frame: common::frame(Vec3::ZERO, glam::DQuat::IDENTITY),
+        irradiance: Rgb::splat(1.0),
+        half_angle: 0.0,
+    };
+    let scene = scene(&shapes, vec![lamp, sun]);
+    let mut field = place(&scene, 1000);
+    find_direct(&scene, &mut field, &EXCHANGE, |_| true).expect("nobody stops it");
+    factors(&scene, &mut field);
+    let inside = field.patches().iter().skip(1).step_by(2);
+    let flux: f64 = inside.map(|patch| f64::from(patch.direct.g * patch.area)).sum();
+    let sent = PI * 6.0 * 0.4 * 0.4;
+    assert!((flux / sent - 1.0).abs() < 0.01, "{flux} of {sent}");
 }
 
 /// The vertex that a ray meets.

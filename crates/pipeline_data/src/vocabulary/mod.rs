@@ -19,6 +19,7 @@ mod light;
 mod material;
 mod principled;
 mod render;
+mod stage_settings;
 mod structure;
 #[cfg(test)]
 mod tests;
@@ -34,6 +35,7 @@ pub use light::{DistantLight, Emission, EnvironmentLight, PointLight, SpotLight}
 pub use material::{Conductor, Dielectric, Diffuse, NormalDistribution, Plastic};
 pub use principled::Principled;
 pub use render::{CausticMethod, DirectMethod, IndirectMethod, LightTransport, Render, SpecularMethod};
+pub use stage_settings::stage_settings;
 pub use structure::{LookAt, MaterialBinding, Transform};
 pub use texture::{TextureChannel, TextureEncoding, TextureFilter, TextureMap, TextureWrap};
 

@@ -1,9 +1,8 @@
 use super::{FinalGather, GatherSource};
 use bevy_ecs::prelude::*;
 use pipeline_core::RenderClock;
-use pipeline_data::vocabulary::{Findings, SceneReport, component_place};
+use pipeline_data::vocabulary::{Findings, SceneReport, stage_settings};
 use pipeline_data::{BuiltPhotonMaps, PatchDemand, PhotonDemand, PrimIndex, ProgressivePasses, RenderSettings};
-use scene_format::Diagnostic;
 use transport::{GatherMethods, IndirectMethod, MapKind, MapKinds};
 
 /// How the render gathers. Written by `plan_gathering`; present where it does.
@@ -30,19 +29,10 @@ pub(super) fn plan_gathering(
     };
     let is_chosen = settings.methods.indirect == IndirectMethod::FinalGather;
     let mut findings = Findings::default();
-    let mut chosen = FinalGather::default();
-    for (prim, written) in &prims {
-        let unused = if prim.0 != settings.render_prim {
-            "`FinalGather` stands on a prim that carries no `Render`; it has no effect there"
-        } else if !is_chosen {
-            "`FinalGather` has no effect: `LightTransport.indirect` is not `FinalGather`"
-        } else {
-            chosen = written.clone();
-            continue;
-        };
-        let place = component_place(report.scene(), prim.0, "FinalGather");
-        findings.push_at(place, Diagnostic::warning("unused-settings", unused));
-    }
+    let unused = (!is_chosen).then_some("`LightTransport.indirect` is not `FinalGather`");
+    let written = ("FinalGather", &prims);
+    let chosen =
+        stage_settings(written, settings.render_prim, unused, report.scene(), &mut findings).unwrap_or_default();
     report.file(findings);
     if !is_chosen {
         return;

@@ -2,7 +2,7 @@ use super::fill::CacheFill;
 use super::{ErrorMetric, IncomingLight, IrradianceCache};
 use bevy_ecs::prelude::*;
 use pipeline_core::RenderClock;
-use pipeline_data::vocabulary::{Findings, SceneReport, component_place, field_place};
+use pipeline_data::vocabulary::{Findings, SceneReport, field_place, stage_settings};
 use pipeline_data::{
     BuiltIrradianceCache, IrradianceRecord, PhotonDemand, PrimIndex, RECORD_DEPTHS, RenderSettings, TransportScene,
 };
@@ -67,19 +67,10 @@ pub(super) fn plan_cache(
     };
     let is_chosen = settings.methods.indirect == IndirectMethod::IrradianceCache;
     let mut findings = Findings::default();
-    let mut chosen = IrradianceCache::default();
-    for (prim, written) in &prims {
-        let unused = if prim.0 != settings.render_prim {
-            "`IrradianceCache` stands on a prim that carries no `Render`; it has no effect there"
-        } else if !is_chosen {
-            "`IrradianceCache` has no effect: `LightTransport.indirect` is not `IrradianceCache`"
-        } else {
-            chosen = written.clone();
-            continue;
-        };
-        let place = component_place(report.scene(), prim.0, "IrradianceCache");
-        findings.push_at(place, Diagnostic::warning("unused-settings", unused));
-    }
+    let unused = (!is_chosen).then_some("`LightTransport.indirect` is not `IrradianceCache`");
+    let written = ("IrradianceCache", &prims);
+    let chosen =
+        stage_settings(written, settings.render_prim, unused, report.scene(), &mut findings).unwrap_or_default();
     if chosen.max_spacing < chosen.min_spacing {
         let message = format!(
             "`max_spacing` must be at least `min_spacing`, {}, but is {}",

@@ -1,8 +1,7 @@
 use super::PathGuiding;
 use bevy_ecs::prelude::*;
-use pipeline_data::vocabulary::{Findings, SceneReport, component_place};
+use pipeline_data::vocabulary::{Findings, SceneReport, stage_settings};
 use pipeline_data::{PhotonDemand, PrimIndex, RenderSettings};
-use scene_format::Diagnostic;
 use transport::{CausticMethod, IndirectMethod, MapKind, MapKinds};
 
 /// How paths are guided. Written by `plan_guiding`; present where they are.
@@ -31,26 +30,18 @@ pub(super) fn plan_guiding(
     }
     let methods = &settings.methods;
     let mut findings = Findings::default();
-    for (prim, written) in &prims {
-        let unused = if prim.0 != settings.render_prim {
-            "`PathGuiding` stands on a prim that carries no `Render`; it has no effect there"
-        } else if methods.indirect != IndirectMethod::PathTrace {
-            "`PathGuiding` has no effect: `LightTransport.indirect` is not `PathTrace`"
-        } else {
-            let mut kinds = MapKinds::default().with(MapKind::Indirect);
-            if methods.caustic == CausticMethod::Trace {
-                kinds = kinds.with(MapKind::Caustic);
-            }
-            demand.kinds = demand.kinds.union(kinds);
-            demand.photons = Some(written.photons);
-            commands.insert_resource(GuidePlan {
-                mix: written.mix,
-                kinds,
-            });
-            continue;
-        };
-        let place = component_place(report.scene(), prim.0, "PathGuiding");
-        findings.push_at(place, Diagnostic::warning("unused-settings", unused));
+    let is_chosen = methods.indirect == IndirectMethod::PathTrace;
+    let unused = (!is_chosen).then_some("`LightTransport.indirect` is not `PathTrace`");
+    let written = ("PathGuiding", &prims);
+    let chosen = stage_settings(written, settings.render_prim, unused, report.scene(), &mut findings);
+    if let Some(chosen) = chosen {
+        let mut kinds = MapKinds::default().with(MapKind::Indirect);
+        if methods.caustic == CausticMethod::Trace {
+            kinds = kinds.with(MapKind::Caustic);
+        }
+        demand.kinds = demand.kinds.union(kinds);
+        demand.photons = Some(chosen.photons);
+        commands.insert_resource(GuidePlan { mix: chosen.mix, kinds });
     }
     report.file(findings);
 }

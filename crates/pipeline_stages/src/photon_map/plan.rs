@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
 use glam::Vec2;
 use pipeline_core::RenderClock;
-use pipeline_data::vocabulary::{Findings, SceneReport, component_place, field_place};
+use pipeline_data::vocabulary::{Findings, SceneReport, field_place, stage_settings};
 use pipeline_data::{
     BuiltPhotonMaps, CameraFrame, PhotonDemand, PhotonFileError, PhotonsOfKind, PrimIndex, ProgressivePasses,
     RenderSettings, TransportScene, read_photons,
@@ -141,32 +141,16 @@ fn chosen<S: PhotonMapSettings>(
     composed: &Scene,
     findings: &mut Findings,
 ) -> Option<(MapPlan, bool)> {
-    let mut chosen = S::default();
-    let mut photons = match wanted.photons {
-        Some(photons) if !settings.methods.reads_map(S::KIND) => photons,
+    let is_wanted = wanted.kinds.wants(S::KIND);
+    let unused = (!is_wanted).then_some("no method of `LightTransport` reads this map");
+    let written = stage_settings((S::NAME, prims), settings.render_prim, unused, composed, findings);
+    let (is_written, chosen) = (written.is_some(), written.unwrap_or_default());
+    let photons = match wanted.photons {
+        Some(photons) if !is_written && !settings.methods.reads_map(S::KIND) => photons,
         _ => chosen.photons(),
     };
-    for (prim, written) in prims {
-        let unused = if prim.0 != settings.render_prim {
-            format!(
-                "`{}` stands on a prim that carries no `Render`; it has no effect there",
-                S::NAME
-            )
-        } else if !wanted.kinds.wants(S::KIND) {
-            format!(
-                "`{}` has no effect: no method of `LightTransport` reads this map",
-                S::NAME
-            )
-        } else {
-            chosen = written.clone();
-            photons = chosen.photons();
-            continue;
-        };
-        let place = component_place(composed, prim.0, S::NAME);
-        findings.push_at(place, Diagnostic::warning("unused-settings", unused));
-    }
     let can_hold = scene.diffuse_area() > 0.0 && (S::KIND != MapKind::Caustic || !scene.specular_targets().is_empty());
-    if !wanted.kinds.wants(S::KIND) || !can_hold {
+    if !is_wanted || !can_hold {
         return None;
     }
     let even_radius = DensitySettings::even_radius(chosen.nearest(), photons, scene.diffuse_area());

@@ -2,9 +2,8 @@ use super::PhotonThinning;
 use bevy_ecs::prelude::*;
 use glam::{Vec2, Vec3};
 use pipeline_core::RenderClock;
-use pipeline_data::vocabulary::{Findings, SceneReport, component_place};
+use pipeline_data::vocabulary::{Findings, SceneReport, stage_settings};
 use pipeline_data::{CameraFrame, PrimIndex, RenderSettings};
-use scene_format::Diagnostic;
 use transport::Camera;
 
 /// How photons are thinned. Written by `plan_thinning`; present where they are.
@@ -48,21 +47,13 @@ pub(super) fn plan_thinning(
         return;
     };
     let mut findings = Findings::default();
-    for (prim, written) in &prims {
-        let unused = if prim.0 != settings.render_prim {
-            "`PhotonThinning` stands on a prim that carries no `Render`; it has no effect there"
-        } else if clock.photons_pending == 0 {
-            "`PhotonThinning` has no effect: nothing reads photons"
-        } else {
-            // A file of photons for this scene holds them thinned; once more, and they would be others.
-            if report.request().photons.is_none() {
-                let resolution = settings.resolution.as_vec2();
-                commands.insert_resource(ThinningPlan::new(written.density, &camera.0, resolution));
-            }
-            continue;
-        };
-        let place = component_place(report.scene(), prim.0, "PhotonThinning");
-        findings.push_at(place, Diagnostic::warning("unused-settings", unused));
+    let unused = (clock.photons_pending == 0).then_some("nothing reads photons");
+    let written = ("PhotonThinning", &prims);
+    let chosen = stage_settings(written, settings.render_prim, unused, report.scene(), &mut findings);
+    // A file of photons for this scene holds them thinned; once more, and they would be others.
+    if let (Some(chosen), None) = (chosen, &report.request().photons) {
+        let resolution = settings.resolution.as_vec2();
+        commands.insert_resource(ThinningPlan::new(chosen.density, &camera.0, resolution));
     }
     report.file(findings);
 }

@@ -1,8 +1,7 @@
 use super::Radiosity;
 use bevy_ecs::prelude::*;
-use pipeline_data::vocabulary::{Findings, SceneReport, component_place};
+use pipeline_data::vocabulary::{Findings, SceneReport, stage_settings};
 use pipeline_data::{PatchDemand, PrimIndex, RenderSettings, SolvedPatches};
-use scene_format::Diagnostic;
 use transport::{IndirectMethod, Methods};
 
 /// How radiosity is solved. Written by `plan_radiosity`; present where it is.
@@ -30,19 +29,10 @@ pub(super) fn plan_radiosity(
     };
     let is_chosen = is_demanded || settings.methods.indirect == IndirectMethod::Radiosity;
     let mut findings = Findings::default();
-    let mut chosen = Radiosity::default();
-    for (prim, written) in &prims {
-        let unused = if prim.0 != settings.render_prim {
-            "`Radiosity` stands on a prim that carries no `Render`; it has no effect there"
-        } else if !is_chosen {
-            "`Radiosity` has no effect: neither `LightTransport.indirect` nor `FinalGather.incoming` is `Radiosity`"
-        } else {
-            chosen = written.clone();
-            continue;
-        };
-        let place = component_place(report.scene(), prim.0, "Radiosity");
-        findings.push_at(place, Diagnostic::warning("unused-settings", unused));
-    }
+    let unused = (!is_chosen).then_some("neither `LightTransport.indirect` nor `FinalGather.incoming` is `Radiosity`");
+    let written = ("Radiosity", &prims);
+    let chosen =
+        stage_settings(written, settings.render_prim, unused, report.scene(), &mut findings).unwrap_or_default();
     report.file(findings);
     if is_chosen {
         commands.insert_resource(RadiosityPlan {
