@@ -198,7 +198,8 @@ fn records_that_do_not_belong_here_are_refused() {
         bytes[place..place + to.len()].copy_from_slice(to);
         bytes
     };
-    let (count, first) = (8 + 4 + 2 * 32 + 24, 8 + 4 + 2 * 32 + 24 + 8);
+    let count = 8 + 4 + 2 * 32 + 8 + 24;
+    let first = count + 8;
     spoiled(&changed(good.len() - 20, &[1, 2, 3]), "damaged");
     spoiled(&changed(8, &[99]), "format 99");
     spoiled(&changed(count, &u64::MAX.to_le_bytes()), "damaged");
