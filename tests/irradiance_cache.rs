@@ -175,8 +175,6 @@ fn audits_find_records_that_are_used_through_a_wall() {
                 "64",
                 "--budget",
                 "1h",
-                "--tolerance",
-                "1%",
                 "--trial",
                 &trial,
                 "--seed",

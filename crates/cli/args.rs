@@ -327,7 +327,7 @@ pub(crate) struct CompareArgs {
     after_help = "Exit codes: 0 no bias found, 1 bias found or the audit failed, 2 bad command line or bad scene, 130 \
                   interrupted.\n\
                   The tracer cannot see everything: what hangs on a few bright samples, or may be light that no ray has met \
-                  yet, counts as undecided. Photons, records and patches are the same for all samples, so their noise is in the image for good, and counts as bias."
+                  yet, counts as undecided. Photon maps are the same for all samples, so their noise is in the image for good, and counts as bias."
 )]
 pub(crate) struct AuditArgs {
     #[command(flatten)]
@@ -339,10 +339,9 @@ pub(crate) struct AuditArgs {
     /// Processor time to trace for, loading included: 90, 30s, 2m, 1h. One pass is always made
     #[arg(long, value_name = "TIME", default_value = "30s", value_parser = parse::duration)]
     pub(crate) budget: Duration,
-    /// Difference that is no defect, relative to the traced value: 1% or 0.01 [default: 1%, or 5% where photons, records or
-    /// patches are interpolated]
-    #[arg(long, value_name = "SHARE", value_parser = parse::share)]
-    pub(crate) tolerance: Option<f64>,
+    /// Difference that is no defect, relative to the traced value: 1% or 0.01
+    #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = parse::share)]
+    pub(crate) tolerance: f64,
     /// Chance that an image without bias passes, above 50%
     #[arg(long, value_name = "SHARE", default_value = "99%", value_parser = parse::confidence)]
     pub(crate) confidence: f64,

@@ -21,16 +21,7 @@ pub(crate) struct Judged {
     pub(crate) ours: Film,
     pub(crate) traced: Film,
     pub(crate) blocks: Vec<PixelBlock>,
-    /// Difference that was no defect.
-    pub(crate) tolerance: f64,
 }
-
-/// Difference that is no defect where every path is traced.
-const TRACED_TOLERANCE: f64 = 0.01;
-
-/// The same where light is interpolated: what a block of 8×8 pixels may be off by when nothing is wrong. The worst of
-/// 1,024 blocks of `cornell` by the irradiance cache is off by 4.7 %.
-const INTERPOLATED_TOLERANCE: f64 = 0.05;
 
 pub(crate) fn execute(options: &AuditArgs) -> Result<(), Failure> {
     outputs::check_distinct(&options.output)?;
@@ -78,7 +69,7 @@ pub(crate) fn execute(options: &AuditArgs) -> Result<(), Failure> {
     } else if found > 0 {
         Err(Failure::failed(format!(
             "the image is biased by more than {} in {found} means; see above",
-            audit_text::percent(judged.tolerance)
+            audit_text::percent(options.tolerance)
         )))
     } else {
         Ok(())
@@ -94,8 +85,6 @@ struct Part {
     warnings: Vec<String>,
     /// Whether any surface has an S lobe.
     has_specular: bool,
-    /// Whether its methods interpolate.
-    interpolates: bool,
     /// The largest radiance that a ray may meet.
     brightest: f64,
 }
@@ -162,7 +151,6 @@ fn render(
         seed: settings.seed,
         warnings,
         has_specular: !scene.0.specular_targets().is_empty(),
-        interpolates: settings.methods.interpolates(),
         brightest: scene.0.lights.brightest().into(),
     })
 }
@@ -171,15 +159,9 @@ fn judge(options: &AuditArgs, ours: Part, traced: Part) -> Result<Judged, Failur
     // Hits alone find light that comes over S lobes; it is looked for at D lobes only.
     let by_chance =
         |layer: &Layer| traced.has_specular && matches!(layer, Layer::Caustic | Layer::Specular | Layer::Indirect);
-    let usual = if ours.interpolates {
-        INTERPOLATED_TOLERANCE
-    } else {
-        TRACED_TOLERANCE
-    };
-    let tolerance = options.tolerance.unwrap_or(usual);
     let how = AuditOptions {
         significance: 1.0 - options.confidence,
-        tolerance,
+        tolerance: options.tolerance,
         by_chance: Layer::ALL[..FilmSums::LAYERS].iter().map(by_chance).collect(),
         brightest: traced.brightest,
     };
@@ -189,7 +171,6 @@ fn judge(options: &AuditArgs, ours: Part, traced: Part) -> Result<Judged, Failur
             ours: ours.film,
             traced: traced.film,
             blocks: ours.blocks,
-            tolerance,
         }),
         None if traced.outcome == Outcome::Interrupted => Err(Failure::interrupted()),
         None => Err(Failure::failed(format!(

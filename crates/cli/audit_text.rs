@@ -64,7 +64,7 @@ pub(crate) fn table(judged: &Judged, options: &AuditArgs) -> String {
             name(test)
         );
     }
-    text + &verdict(judged, options)
+    text + &verdict(audit, options)
 }
 
 /// The blocks that differ most beyond tolerance: by chance, then by t; those that decide nothing are left out.
@@ -80,11 +80,10 @@ fn worst(audit: &Audit, count: usize) -> Vec<&AuditTest> {
 }
 
 /// What was found, what could have been found, and what cannot be said.
-fn verdict(judged: &Judged, options: &AuditArgs) -> String {
-    let audit = &judged.audit;
+fn verdict(audit: &Audit, options: &AuditArgs) -> String {
     let tests = audit.overall.len() + audit.blocks.len();
     let (found, undecided) = (audit.findings().count(), audit.undecided().count());
-    let (tolerance, confidence) = (percent(judged.tolerance), percent(options.confidence));
+    let (tolerance, confidence) = (percent(options.tolerance), percent(options.confidence));
     let mut text = if found > 0 {
         format!(
             "biased: {found} of {tests} means are off by more than {tolerance} and noise, at {confidence} confidence\n"
@@ -92,7 +91,7 @@ fn verdict(judged: &Judged, options: &AuditArgs) -> String {
     } else {
         format!("no bias of more than {tolerance} found in {tests} means, at {confidence} confidence\n")
     };
-    if let Some(reach) = reach(judged, options) {
+    if let Some(reach) = reach(audit, options) {
         let _ = writeln!(text, "half of the blocks would have shown a bias of {}", percent(reach));
     }
     if undecided > 0 {
@@ -114,8 +113,7 @@ fn verdict(judged: &Judged, options: &AuditArgs) -> String {
 }
 
 /// The relative bias of a block's beauty that would have been found in half of the blocks; none where none is decided.
-fn reach(judged: &Judged, options: &AuditArgs) -> Option<f64> {
-    let audit = &judged.audit;
+fn reach(audit: &Audit, options: &AuditArgs) -> Option<f64> {
     let decided: Vec<&AuditTest> = audit.blocks.iter().filter(|test| test.chance.is_some()).collect();
     let beauty = decided
         .iter()
@@ -125,7 +123,7 @@ fn reach(judged: &Judged, options: &AuditArgs) -> Option<f64> {
     let t = film::t_quantile(level, freedom);
     median(
         beauty
-            .map(|test| judged.tolerance * (1.0 + t * test.standard_error / test.tolerated))
+            .map(|test| options.tolerance * (1.0 + t * test.standard_error / test.tolerated))
             .collect(),
     )
 }
@@ -156,7 +154,7 @@ pub(crate) fn json(judged: &Judged, options: &AuditArgs) -> String {
     let value = serde_json::json!({
         "biased": audit.findings().count() > 0,
         "confidence": options.confidence,
-        "tolerance": judged.tolerance,
+        "tolerance": options.tolerance,
         "samples": audit.samples[0],
         "traced_samples": audit.samples[1],
         "findings": audit.findings().map(test).collect::<Vec<_>>(),

@@ -44,7 +44,7 @@ fn photons_that_leak_through_a_wall_are_found() {
     assert_eq!(ran.code, Some(1), "{}{}", ran.stdout, ran.stderr);
     assert!(ran.stdout.contains("biased: "), "{}", ran.stdout);
     assert!(
-        ran.stderr.contains("error: the image is biased by more than 5 %"),
+        ran.stderr.contains("error: the image is biased by more than 1 %"),
         "{}",
         ran.stderr
     );

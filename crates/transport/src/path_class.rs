@@ -305,14 +305,6 @@ impl Methods {
         }
     }
 
-    /// True when a method estimates light between photons, records or patches, so that some bias is its nature.
-    #[must_use]
-    pub fn interpolates(&self) -> bool {
-        self.direct == DirectMethod::PhotonMap
-            || self.caustic == CausticMethod::PhotonMap
-            || !matches!(self.indirect, IndirectMethod::PathTrace | IndirectMethod::Off)
-    }
-
     /// The layer that light from the hemisphere of a D vertex adds to which a path of class `class` reached, by gather rays
     /// or from the irradiance cache; `None` where it is not asked for.
     #[must_use]
